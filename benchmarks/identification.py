@@ -71,7 +71,7 @@ def noise_alone() -> None:
         values = made.values.copy()
         values[:, 6:] = np.random.default_rng(10_000 + seed).standard_normal(values[:, 6:].shape)
         found = identify(replace(made, samples=InMemory(values)))
-        wrong += len(found.frequencies) > 0 or "no mode stands out" not in found.warnings[0]
+        wrong += len(found.frequencies) > 0 or "no mode stands out" not in found.data_warnings[0]
     print("\nNoise that has nothing to do with the inputs")
     share("records in which a mode was found", wrong)
 

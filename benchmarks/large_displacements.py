@@ -149,7 +149,7 @@ def tables() -> object:
 
 
 def stroke() -> object:
-    return fs.stroke(fs.path(fs.nonlinear(voice_coil_stage()), "platform.x", np.linspace(-1e-3, 1e-3, 41)))
+    return fs.stroke(fs.load_path(fs.nonlinear(voice_coil_stage()), "platform.x", np.linspace(-1e-3, 1e-3, 41)))
 
 
 def designs() -> fs.Mechanism:

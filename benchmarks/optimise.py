@@ -27,7 +27,7 @@ from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.search.problem import SPARE
 from flexstage.studies.optimisation.setting import Setting, setting
@@ -88,7 +88,7 @@ class Counted:
 def main() -> None:
     """Print the table."""
     study = loads_study(next(block.text for block in blocks("docs/optimise.md") if block.word("file") == "study.toml"))
-    wanted = load_wanted(study)
+    wanted = load_optimisation(study)
     set_up = setting(study, wanted)
     apart = gradient_error(set_up)
     print(f"gradients against differences: {apart:.1e} (relative, all measures and variables)")

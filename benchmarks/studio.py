@@ -5,7 +5,7 @@ machine as far as its caches do. A rest is taken apart by where it stands:
 
 - until verdicts: the number written into the text, text read and checked, numbers told; stiffness, lost motion, modes and responses;
   requirements. Nothing of the page's other panes is asked before.
-- in view: besides, the picture, strokes and strength, and cautions: all that a page shows as it is opened (Figures in front, no motion).
+- in view: besides, the picture, strokes and strength, and warnings: all that a page shows as it is opened (Figures in front, no motion).
 - with another pane in front: the same without strokes and strength, which are computed when Figures are opened again.
 - all: with the motions of the picture too, as where one plays.
 
@@ -76,7 +76,7 @@ async def measured(folder: Path, links: int) -> None:
     stage = folder / "stage.toml"
     stage.write_text(dumps(case("double-triangle")), encoding="utf-8")
     async with started(stage) as (_, url):
-        await (await opened(url)).until(lambda message: isinstance(message, say.Cautions))  # all modules are translated then
+        await (await opened(url)).until(lambda message: isinstance(message, say.Warnings))  # all modules are translated then
     async with started(stage) as (studio, url):
         await measure(studio, url, stage, links)
 
@@ -98,8 +98,8 @@ async def measure(studio: psutil.Process, url: str, stage: Path, links: int) -> 
     page = await opened(url)
     await page.until(lambda message: isinstance(message, say.Figures))
     print(f"until figures, from the command on: {spent(studio):.2f} s")
-    await page.until(lambda message: isinstance(message, say.Cautions))
-    print(f"until cautions: {spent(studio):.2f} s, {page.bytes} bytes")
+    await page.until(lambda message: isinstance(message, say.Warnings))
+    print(f"until warnings: {spent(studio):.2f} s, {page.bytes} bytes")
     row = next(each for each in page.told[say.State].amounts if each.address == ADDRESS)
     await page.ask(say.Line, line=1)  # the second process has started then
     await page.ask(say.Drag, address=ADDRESS, value=row.value)
@@ -129,9 +129,9 @@ async def measure(studio: psutil.Process, url: str, stage: Path, links: int) -> 
         text = stage.read_text(encoding="utf-8").replace("[placements.B1-B3]", f"[placements.B1-B{links // 3}]").replace("B4-B6", "C4-C6")
         begun = time.monotonic()
         await page.ask(say.Edit, text=text, revision=page.told[say.State].revision)
-        while say.Cautions not in page.told or page.told[say.Cautions].revision < page.told[say.State].revision:
+        while say.Warnings not in page.told or page.told[say.Warnings].revision < page.told[say.State].revision:
             message = await page.until(lambda _: True)
-            if isinstance(message, (say.Engine, say.Figures, say.Verdicts, say.Reach, say.Scene, say.Cautions)):
+            if isinstance(message, (say.Engine, say.Figures, say.Verdicts, say.Reach, say.Scene, say.Warnings)):
                 told = f"{message.text}, {message.seconds} s" if isinstance(message, say.Engine) else ""
                 print(f"{links} links, {time.monotonic() - begun:.1f} s: {type(message).__name__} {told}")
 
@@ -142,7 +142,7 @@ async def rest(studio: psutil.Process, page: Page, value: float) -> tuple[float,
     await page.ask(say.Rest, address=ADDRESS, value=value)
     await page.until(lambda message: isinstance(message, say.Verdicts))
     until = spent(studio) - before
-    await page.until(lambda message: isinstance(message, say.Cautions))
+    await page.until(lambda message: isinstance(message, say.Warnings))
     return until, spent(studio) - before, page.bytes - sent
 
 

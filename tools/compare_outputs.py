@@ -84,6 +84,9 @@ TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
     r"\bDeparture": "Override",
     r"\bgiven (part|6x6)": r"compliance_matrix \1",
     r"\bhysteresis left\b": "residual hysteresis",
+    "Caution": "Warning",
+    "caution": "warning",
+    "flexstage result 2": "flexstage result 3",
     **WORDS,
 }
 PATHS: Mapping[str, str] = {  # in JSON, MAT, HDF5 and tables
@@ -95,6 +98,24 @@ PATHS: Mapping[str, str] = {  # in JSON, MAT, HDF5 and tables
     r"(charge\.actuators\..*)\.left$": r"\1.residual_hysteresis",
     r"(variables.*)@of$": r"\1@address",
     r"(responses.*)@of$": r"\1@measure",
+    r"\bwarnings\b": "data_warnings",
+    r"\bcautions\b": "warnings",
+    r"\bfindings\b": "errors",
+    r"\bstance\b": "operating_point",
+    r"\breach\b": "force_workspace",
+    r"\bsingle\b": "single_axis",
+    r"\bcorner\b": "worst_case",
+    r"\bagainst(?=_n_per_m|\b)": "stage_stiffness",
+    r"\bgives_way\b": "buckling_mode",
+    r"\bturned\b": "detuned",
+    r"\bleast(?=_n\b)": "min_force",
+    r"\blargest(?=_n\b)": "max_force",
+    r"\bstress\.least\b": "stress.min_safety",
+    r"\bbuckling\.least\b": "buckling.min_factor",
+    r"\bstability\.least\b": "stability.slowest_pole",
+    r"\bdamping\.least\b": "damping.min_ratio",
+    r"(responses\S*)\bleast\b": r"\1min_value",
+    r"(responses\S*)\blargest\b": r"\1max_value",
 }
 ALONE: Mapping[str, str] = {}  # paths of one side only, and why
 RULES: tuple[Rule, ...] = ()  # numbers whose arithmetic or its order changed

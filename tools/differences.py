@@ -349,18 +349,19 @@ def _found(pattern: str, lines: Sequence[str]) -> Iterator[str]:
 def compared_folders(name: str, old: Path, new: Path, meant: Meant) -> Iterator[tuple[str, Finding]]:
     """All files that a task has on both sides: where, and what was found."""
     at_old, at_new = ({str(each.relative_to(folder)) for each in folder.rglob("*") if each.is_file()} for folder in (old, new))
-    for each in sorted(at_old | at_new):
+    before = {each if each in at_new else respelled(each, meant.paths): each for each in at_old}
+    for each in sorted(before.keys() | at_new):
         where = f"{name}/{each}"
-        if each not in at_old & at_new:
-            yield where, (DIFFERENT, f"only at {'BASE' if each in at_old else 'HEAD'}")
+        if each not in before.keys() & at_new:
+            yield where, (DIFFERENT, f"only at {'BASE' if each in before else 'HEAD'}")
             continue
-        first, second = read(old / each), read(new / each)
+        first, second = read(old / before[each]), read(new / each)
         if each.endswith(".stderr") and isinstance(first, list) and first[0] != "exit code 0" and not name.startswith("refused"):
             yield where, (DIFFERENT, f"{first[0]} at BASE: {' / '.join(first[1:])[:200]}")
         if isinstance(first, list) and isinstance(second, list):
             rule = next((each for each in meant.rules if re.search(each.where, f"{where}:")), None)
             found = [*compared_texts(first, second, meant, rule)]
-            if found == [(EQUAL, "")] and (old / each).read_bytes() != (new / each).read_bytes():
+            if found == [(EQUAL, "")] and (old / before[each]).read_bytes() != (new / each).read_bytes():
                 found = [(SKIPPED, "blanks, markup, scripts, shapes of pictures")]
         else:
             one, other = (document({"lines": each}) if isinstance(each, list) else each for each in (first, second))

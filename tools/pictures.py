@@ -51,7 +51,7 @@ from flexstage.solid.results.read import STANDARD_SOLIDS, read_solid
 from flexstage.solid.results.surface import mode_surfaces
 from flexstage.solid.show.skin_figures import skin_figure
 from flexstage.spatial.frame import COMPONENTS, transport
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.show.figures import convergence_figure
 from flexstage.studies.sweeps.definition import Study
@@ -273,7 +273,7 @@ def far_motion() -> Any:
         figure.subplots_adjust(left=0.09, right=0.99, bottom=0.17, top=0.9, wspace=0.28)
         stiff, low = figure.subplots(1, 2)
         for (label, each), color in zip({"leaves as plates": stage, "leaves as beams": plain}.items(), SERIES, strict=False):
-            found = fs.stroke(fs.path(fs.nonlinear(each), "platform.x", values)).along
+            found = fs.stroke(fs.load_path(fs.nonlinear(each), "platform.x", values)).along
             for axes, column, factor in ((stiff, "stiffness", 1.0), (low, "platform.z", 1e3)):
                 axes.plot(1e3 * values, factor * found.values[:, found.columns.index(column)], color=color, label=label)
         for axes, level, title in ((stiff, drawn, "stiffness along x [N/m]"), (low, 0.0, "z of the table [mm]")):
@@ -383,7 +383,7 @@ def strongest() -> Any:
 def optimum() -> Any:
     """How the searches of docs/optimise.md converge."""
     study = loads_study(next(block.text for block in blocks("docs/optimise.md") if block.word("file") == "study.toml"))
-    return convergence_figure(optimise(study, load_wanted(study)))
+    return convergence_figure(optimise(study, load_optimisation(study)))
 
 
 @cache

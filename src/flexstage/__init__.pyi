@@ -13,7 +13,7 @@ from flexstage.analysis.linear_statics.drift import (
     drift as drift,
 )
 from flexstage.analysis.loaded.load_cases import (
-    critical_factors as critical_factors,
+    buckling_factors as buckling_factors,
 )
 from flexstage.analysis.linear_statics.lost_motion import (
     lost_motion as lost_motion,
@@ -38,8 +38,8 @@ from flexstage.analysis.assessment.sensitivities import (
 from flexstage.analysis.loaded.misalign import (
     misalign as misalign,
 )
-from flexstage.analysis.loaded.stance import (
-    stance as stance,
+from flexstage.analysis.loaded.operating_point import (
+    operating_point as operating_point,
 )
 from flexstage.analysis.loaded.stroke import (
     stroke as stroke,
@@ -51,8 +51,8 @@ from flexstage.analysis.linear_statics.statics import (
 from flexstage.analysis.linear_statics.inner_stage import (
     amplified as amplified,
 )
-from flexstage.analysis.workspace.reach import (
-    reach as reach,
+from flexstage.analysis.workspace.force_workspace import (
+    force_workspace as force_workspace,
 )
 from flexstage.analysis.workspace.workspace import (
     workspace as workspace,
@@ -104,7 +104,7 @@ from flexstage.mechanism.mechanism import (
     Mechanism as Mechanism,
     ModalDamping as ModalDamping,
     NamedNumber as NamedNumber,
-    Opening as Opening,
+    Aperture as Aperture,
     Placement as Placement,
     Probe as Probe,
     RayleighDamping as RayleighDamping,
@@ -119,7 +119,7 @@ from flexstage.mechanism.assembly.mount import (
     mount as mount,
 )
 from flexstage.mechanism.assembly.pattern import (
-    Facing as Facing,
+    InstanceOrientation as InstanceOrientation,
     Normal as Normal,
     Polar as Polar,
     Pose as Pose,
@@ -146,8 +146,8 @@ from flexstage.models.lumped import (
 from flexstage.models.mapped import (
     mapped as mapped,
 )
-from flexstage.models.nonlinear.paths.critical import (
-    critical as critical,
+from flexstage.models.nonlinear.paths.critical_load import (
+    critical_load as critical_load,
 )
 from flexstage.models.nonlinear.equilibrium import (
     equilibrium as equilibrium,
@@ -155,20 +155,20 @@ from flexstage.models.nonlinear.equilibrium import (
 from flexstage.models.nonlinear.linearise import (
     linearise as linearise,
 )
-from flexstage.models.nonlinear.paths.path import (
-    branch as branch,
-    path as path,
-    trace as trace,
+from flexstage.models.nonlinear.paths.load_path import (
+    post_buckling_path as post_buckling_path,
+    load_path as load_path,
+    continuation as continuation,
 )
-from flexstage.models.nonlinear.slopes import (
-    over_designs as over_designs,
-    slopes as slopes,
+from flexstage.models.nonlinear.gradients import (
+    evaluate_designs as evaluate_designs,
+    gradients as gradients,
 )
 from flexstage.models.nonlinear.stage import (
     nonlinear as nonlinear,
 )
 from flexstage.models.nonlinear.state import (
-    Effort as Effort,
+    SolverOptions as SolverOptions,
 )
 from flexstage.parts.body import (
     Block as Block,
@@ -204,10 +204,10 @@ from flexstage.parts.freedom import (
 )
 from flexstage.parts.gauge import (
     Gauge as Gauge,
-    Positive as Positive,
+    SensorSense as SensorSense,
 )
-from flexstage.parts.given import (
-    Given as Given,
+from flexstage.parts.compliance_matrix import (
+    ComplianceMatrix as ComplianceMatrix,
     Joint as Joint,
 )
 from flexstage.parts.leaf import (
@@ -288,8 +288,8 @@ from flexstage.show.sheets import (
     to_pandas as to_pandas,
     to_xarray as to_xarray,
 )
-from flexstage.show.viewer.course import (
-    play as play,
+from flexstage.show.viewer.animation import (
+    animate as animate,
 )
 from flexstage.show.viewer.view import (
     View as View,

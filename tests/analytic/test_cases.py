@@ -25,8 +25,8 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.leaf import Leaf, LeafSection
 
 

@@ -15,7 +15,7 @@ from flexstage.control.example import integral_loop
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
 from flexstage.control.plant_models.creep_plant import add_creep
-from flexstage.control.plant_models.electronics import Amplifier, AmplifierSettings, ChargeDrive, ChargeHold, hardware
+from flexstage.control.plant_models.electronics import Amplifier, AmplifierSettings, ChargeDrive, ChargeHold, sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.control.simulation.actuation import Actuation
 from flexstage.control.simulation.machine import Amplifiers, Relief, machine
@@ -63,7 +63,7 @@ def test_the_plant_is_that_of_stacks_of_a_relaxing_stiffness(name):
     held = legs(stage, model)
     drives = {each.actuator: drive for each in held}
     links = tuple(each.link for each in held)
-    stiff = plant(at_constant_charge(model, held, drives), ideal(stage), hardware(stage), links=links)
+    stiff = plant(at_constant_charge(model, held, drives), ideal(stage), sampling_chain(stage), links=links)
     found = leak_charge(stiff, held, drives)
     K, M = model.stiffness_matrix, model.inertia_matrix
     shapes = scipy.linalg.eigh(at_constant_charge(model, held, drives).stiffness_matrix, M)
@@ -100,14 +100,14 @@ def test_modes_rise_and_rest_stays():
 
 def test_legs_on_charge_are_damped_too():
     found = resolve(case("parallelogram"), LoopSetup(amplifier=HELD, damping=DampingSetup(ratio=0.05)))
-    assert found.damping.least >= 0.05 * (1.0 - 1e-6)
+    assert found.damping.min_ratio >= 0.05 * (1.0 - 1e-6)
     assert not [each for each in found.plant.system.output_names if each.endswith(".fx")]
     assert found.plant.system.growth < 0.0
 
 
 def test_the_corner_follows_from_the_leakage():
     given = loads_setup('format = "flexstage loop 1"\namplifier = { kind = "charge", coupling = 0.6, leakage = "100 Mohm", bits = 16 }')
-    power = hardware(case("double-triangle"), amplifiers=given.amplifier.settings).amplifiers["B1"]
+    power = sampling_chain(case("double-triangle"), amplifiers=given.amplifier.settings).amplifiers["B1"]
     assert power.charge.corner == pytest.approx(1.0 / (2.0 * np.pi * 100e6 * 0.4e-6), rel=1e-12)
     assert power.step == pytest.approx(150e-6 / 2**16)
 
@@ -174,4 +174,4 @@ def test_leakage_needs_a_capacitance():
     stage = case("parallelogram")
     bare = replace(stage, parts={**stage.parts, "stack": replace(stage.parts["stack"], capacitance=None)})
     with pytest.raises(DesignError, match="leakage needs its stack's capacitance"):
-        hardware(bare, amplifiers=AmplifierSettings(charge=ChargeHold(0.5, 0.2, leakage=1e6)))
+        sampling_chain(bare, amplifiers=AmplifierSettings(charge=ChargeHold(0.5, 0.2, leakage=1e6)))

@@ -16,7 +16,7 @@ from flexstage.base.units.scale import X, Y, Z, mm
 from flexstage.beams.compliance import compliance, stiffness
 from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.assembly.expand import expand
-from flexstage.mechanism.assembly.pattern import Facing, Normal, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Normal, Polar, Pose
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Unit
 from flexstage.mechanism.restrict import restrict
@@ -178,7 +178,7 @@ def three_legs(part):
     """Three copies of a unit of one compound each, under a platform."""
     leg = Unit({}, {"pivot": Link((GROUND, PLATFORM), "hinge", (0.0, 0.0, 0.0), X, Y)})
     body = Body(solids={"plate": Block("steel", (0.2, 0.2, 0.02), (0.0, 0.0, 0.05))})
-    place = {"B1-B3": Placement("leg", Polar(0.08, 0.0, Facing.TANGENT))}
+    place = {"B1-B3": Placement("leg", Polar(0.08, 0.0, InstanceOrientation.TANGENT))}
     return Mechanism(
         "legs", {"steel": STEEL}, {"hinge": part}, {PLATFORM: body}, units={"leg": leg}, placements=place, gravity=(0.0, 0.0, 0.0)
     )

@@ -14,13 +14,13 @@ from flexstage.control.damping.legs import legs, pair_zeros
 from flexstage.control.damping.sampled import sample_legs
 from flexstage.control.example import integral
 from flexstage.control.noise import DisturbanceResponse, noise_budget
-from flexstage.control.plant_models.electronics import AmplifierSettings, hardware
+from flexstage.control.plant_models.electronics import AmplifierSettings, sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
-from flexstage.control.study.setup import KINDS, AmplifierSetup, ControllerSetup, DampingSetup, LoopSetup, Motion, StepMotion
+from flexstage.control.study.setup import KINDS, AmplifierSetup, AxisAmplitudes, ControllerSetup, DampingSetup, LoopSetup, StepMotion
 from flexstage.control.study.study import loop_study
 from flexstage.control.systems.closed import loop
 from flexstage.mechanism.store import dumps, loads
@@ -63,7 +63,7 @@ def damped_by(stage, law, **given):
     """The plant of a stage's lumped model without clock, with the inner loops closed, and what they do."""
     model = lumped(stage)
     found = legs(stage, model)
-    bare = plant(model, ideal(stage), hardware(stage, **given), links=tuple(each.sensed for each in found))
+    bare = plant(model, ideal(stage), sampling_chain(stage, **given), links=tuple(each.sensed for each in found))
     felt = as_felt(bare, found)
     closed = close_damping(bare, law, felt)
     return model, felt, bare, closed
@@ -254,7 +254,7 @@ def test_both_loops_are_held_against_the_amplifiers_speed(size, held):
         controller=ControllerSetup(integral=600.0),
         amplifier=AmplifierSetup(slew=1800.0),
         damping=DampingSetup(ratio=0.4),
-        trajectory=StepMotion(amplitude=Motion(x=size)),
+        trajectory=StepMotion(amplitude=AxisAmplitudes(x=size)),
     )
     given = resolve(case("parallelogram"), asked)
     control = make_controller(given, given.plant.coordinates.strokes)
@@ -262,7 +262,7 @@ def test_both_loops_are_held_against_the_amplifiers_speed(size, held):
     use = run.legs["B"]
     assert use.slew == pytest.approx(1800.0 * 38e-6 / 140.0)
     assert use.is_held == held
-    assert any("as if its amplifier gave it" in each.what for each in run.cautions) != held
+    assert any("as if its amplifier gave it" in each.what for each in run.warnings) != held
 
 
 LIMITED = {
@@ -278,7 +278,7 @@ def test_positive_feedback_keeps_within_the_amplifiers_limits(kind):
         rate=40e3,
         controller=ControllerSetup(kind=KINDS.parse(kind, "kind")),
         amplifier=LIMITED[kind],
-        trajectory=StepMotion(amplitude=Motion(x=5e-6)),
+        trajectory=StepMotion(amplitude=AxisAmplitudes(x=5e-6)),
     )
     given = resolve(case("parallelogram"), asked)
     control = make_controller(given, given.plant.coordinates.strokes)
@@ -332,7 +332,7 @@ def test_damping_that_is_not_reached_is_said():
     for rate, reached in ((None, 0.3), (10e3, 0.01)):
         study = loop_study(case("parallelogram"), LoopSetup(damping=DampingSetup(ratio=0.3, rate=rate)))
         assert study.damping.reached == pytest.approx(reached, rel=0.15)
-        told = [each.where for each in study.cautions if "was asked for, and the least" in each.what]
+        told = [each.where for each in study.warnings if "was asked for, and the least" in each.what]
         assert told == (["damping.ratio"] if rate else [])
 
 

@@ -154,11 +154,11 @@ def test_no_rate_independent_hysteresis_is_refused():
     assert "by" in refused(volts, 1.5e-7 * volts + wander)
 
 
-def test_cautions_say_what_a_record_does_not_show():
+def test_warnings_say_what_a_record_does_not_show():
     volts = legs([0, 1000, 0, 1000, 0], 80)
     found = identify_hysteresis(volts, preisach(STROKE, RANGE, 0.15).run(volts), limits=(-200.0, 1100.0))
-    assert "no inner loops" in found.cautions[0].what
-    assert "covers 0 V to 1000 V, 77% of the actuator's range" in found.cautions[1].what
+    assert "no inner loops" in found.warnings[0].what
+    assert "covers 0 V to 1000 V, 77% of the actuator's range" in found.warnings[1].what
     assert (found.branches, found.inner) == (4, 0)
 
 

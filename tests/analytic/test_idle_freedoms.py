@@ -14,8 +14,8 @@ from flexstage.mechanism.mechanism import Force, Link, Mechanism
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body, Inertia
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted
 from flexstage.spatial.frame import COMPONENTS, FORCES, cross_matrix
 
@@ -36,7 +36,7 @@ def struts():
 def hexapod(spin):
     """Rods with the inertia `spin` about themselves, on springs along themselves, between ball joints."""
     compliance = tuple(tuple(1.0 / SOFT if row == column == 0 else float(row == column) for column in range(6)) for row in range(6))
-    parts = {"foot": Restricted(Given(compliance, TURNS), (Freedom.X,), TURNS), "head": Joint(TURNS)}
+    parts = {"foot": Restricted(ComplianceMatrix(compliance, TURNS), (Freedom.X,), TURNS), "head": Joint(TURNS)}
     bodies, links = {"platform": Body(mass=MASS, inertia=Inertia(*MOMENTS), centre=(0.0, 0.0, 0.0))}, {}
     for number, (head, along) in enumerate(struts()):
         middle = head - 0.5 * LENGTH * along

@@ -29,10 +29,10 @@ from flexstage.models.nonlinear import summed
 from flexstage.models.nonlinear.elements.strain import strains
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.paths.critical import Kind, critical, unstable_motions
-from flexstage.models.nonlinear.paths.path import branch, path, trace
+from flexstage.models.nonlinear.paths.critical_load import Kind, critical_load, unstable_motions
+from flexstage.models.nonlinear.paths.load_path import continuation, load_path, post_buckling_path
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.models.nonlinear.state import Effort
+from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
@@ -91,7 +91,7 @@ def chain(count: int, whole: Leaf = THIN, *, density: float = 0.0, gravity: tupl
 def follow_chain(count: int) -> None:
     """It is the elastica, found from one step, and stable; pressed beyond Euler's load it is not, and a held end holds it."""
     model = chain(count)
-    found = equilibrium(model, {"platform.fy": np.array([1.0, 2.0]) * RIGIDITY}, effort=Effort(halvings=0, arcs=0))
+    found = equilibrium(model, {"platform.fy": np.array([1.0, 2.0]) * RIGIDITY}, options=SolverOptions(halvings=0, arcs=0))
     assert found.converged.all()
     assert found.displacement()[:, 1] == pytest.approx([0.30172077, 0.49345748], rel=1e-7)
     assert found.displacement()[:, 0] + 1.0 == pytest.approx([0.94356676, 0.83935828], rel=1e-7)
@@ -127,7 +127,7 @@ def test_a_chain_of_flexures_is_one_flexure(monkeypatch: pytest.MonkeyPatch):
     assert found.displacement() == pytest.approx(one.displacement(), rel=1e-6)
     assert found.displacement()[1] < -0.3
     follow_chain(26)
-    pressed = critical(chain(26, replace(THIN, thickness=3e-4)), {"platform.fx": -1e3 * RIGIDITY})
+    pressed = critical_load(chain(26, replace(THIN, thickness=3e-4)), {"platform.fx": -1e3 * RIGIDITY})
     assert pressed.factor == pytest.approx(np.pi**2 / 4.0, rel=1e-6)
     along = pressed.state.model.reference[:-1, 0]
     assert pressed.shape[:, 1] / pressed.shape[np.argmax(along), 1] == pytest.approx(1.0 - np.cos(0.5 * np.pi * along), abs=1e-6)
@@ -140,7 +140,7 @@ def test_a_chain_of_flexures_is_one_flexure(monkeypatch: pytest.MonkeyPatch):
 def test_a_chain_of_a_thousand_flexures_is_one_flexure():
     """Its stiffness too, without the memory of dense matrices; what needs these says how much before it begins."""
     follow_chain(1000)
-    assert critical(chain(1000), {"platform.fx": -RIGIDITY}).factor == pytest.approx(np.pi**2 / 4.0, rel=1e-3)
+    assert critical_load(chain(1000), {"platform.fx": -RIGIDITY}).factor == pytest.approx(np.pi**2 / 4.0, rel=1e-3)
     with pytest.raises(DesignError, match="GB, above 8 GB"):
         linearise(equilibrium(chain(1000)))
 
@@ -167,11 +167,11 @@ def shearing() -> Nonlinear:
 def test_a_column_that_shears_buckles_as_haringx_has_it():
     """P (1 + P / GA) = pi^2 E I / (4 L^2) (J. A. Haringx, Philips Research Reports 3, 1948); Euler's load without shear."""
     euler = np.pi**2 / 4.0
-    found = critical(shearing(), {"platform.fx": -RIGIDITY})
+    found = critical_load(shearing(), {"platform.fx": -RIGIDITY})
     assert found.factor == pytest.approx(100.0 * (np.sqrt(1.0 + 4.0 * euler / 200.0) - 1.0), rel=1e-7)
     assert found.kind is Kind.BIFURCATION
     assert np.argmax(np.abs(found.shape[0])) in {1, 5}
-    assert critical(cantilever(), {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
+    assert critical_load(cantilever(), {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
 
 
 def test_bodies_one_by_one_warm_the_stage_as_all_of_it_together():
@@ -248,7 +248,7 @@ def upright_strip() -> tuple[Nonlinear, dict[str, float], float]:
 def test_a_strip_bent_upright_buckles_sideways():
     """4.0126 sqrt(E I G J) / L^2 at its tip (L. Prandtl, Kipp-Erscheinungen, 1899); 4.01259934 with more digits."""
     model, load, unit = upright_strip()
-    assert critical(model, load).factor == pytest.approx(4.01259934 * unit, rel=1e-6)
+    assert critical_load(model, load).factor == pytest.approx(4.01259934 * unit, rel=1e-6)
 
 
 @pytest.mark.parametrize(("beta", "factor"), [(1, 1.0029), (3, 1.0208), (5, 1.0402), (7, 1.0533), (10, 1.0634), (20, 1.0735)])
@@ -407,11 +407,11 @@ def vee() -> Nonlinear:
 def test_a_shallow_vee_snaps_through():
     """By arc length the load rises to a limit, where the count of unstable motions has it too, and turns negative: it is bistable."""
     model, push = vee(), {"platform.fy": -1.0}
-    found = trace(model, push, step=0.002, points=24)
+    found = continuation(model, push, step=0.002, points=24)
     top = next(event for event in found.events if event.kind is Kind.LIMIT)
     curve = np.polyfit([-1.0, 0.0, 1.0], found.values[top.before - 1 : top.before + 2], 2)
     limit = curve[2] - curve[1] ** 2 / (4.0 * curve[0])
-    known = critical(model, push)
+    known = critical_load(model, push)
     assert known.kind is Kind.LIMIT
     assert known.factor == pytest.approx(limit, rel=1e-3)
     assert found.values.min() < 0.0 < found.values[-1]
@@ -421,8 +421,8 @@ def test_a_shallow_vee_snaps_through():
 
 def test_a_drive_is_followed_where_no_load_could_go():
     """The same states by holding the platform instead: beyond the limit its force falls."""
-    traced = trace(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
-    found = path(vee(), "platform.y", traced.state.displacement()[:, 1])
+    traced = continuation(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
+    found = load_path(vee(), "platform.y", traced.state.displacement()[:, 1])
     assert found.state.converged.all()
     assert -found.state.reactions[:, 0] == pytest.approx(traced.values, rel=1e-6, abs=1e-6)
 
@@ -430,7 +430,7 @@ def test_a_drive_is_followed_where_no_load_could_go():
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_buckled_column_is_an_elastica(side: float):
     """P L^2 / (E I) = K(k)^2 and y / L = 2 k / K(k), k the sine of half the angle at its end, to 76 degrees both ways."""
-    found = branch(cantilever(), {"platform.fx": -RIGIDITY}, side=side, step=0.2, points=8)
+    found = post_buckling_path(cantilever(), {"platform.fx": -RIGIDITY}, side=side, step=0.2, points=8)
     angle, across = found.state.rotation()[1:, 2], found.state.displacement()[1:, 1]
     sine = np.sin(0.5 * angle)
     assert found.values[1:] == pytest.approx(ellipk(sine**2) ** 2, rel=1e-6)
@@ -459,7 +459,7 @@ def test_a_column_buckles_under_its_own_weight():
     unit = (-RIGIDITY / (THIN.width * THIN.thickness), 0.0, 0.0)
     heavy = {"soft": replace(SOFT, density=1.0)}
     column = nonlinear(Mechanism("", heavy, {"leaf": THIN}, {"platform": top}, {"leaf": link}, gravity=unit))
-    found = branch(column, {"weight": 1.0}, weight=0.0, step=0.2, points=3)
+    found = post_buckling_path(column, {"weight": 1.0}, weight=0.0, step=0.2, points=3)
     angles = found.state.rotation()[:, 2]
     assert found.values[0] == pytest.approx(7.83735, rel=1e-6)
     assert found.values[1:] == pytest.approx([heavy_elastica(each) for each in angles[1:]], rel=1e-6)
@@ -477,7 +477,7 @@ def pressed_guide() -> Nonlinear:
 
 def test_a_pressed_guide_buckles_aside():
     """Each leaf is four quarters of an elastica: P L^2 / (E I) = 4 K(k)^2 a leaf, aside by 2 k / K(k) of its length."""
-    found = branch(pressed_guide(), {"platform.fx": -2.0 * RIGIDITY}, step=0.05, points=6)
+    found = post_buckling_path(pressed_guide(), {"platform.fx": -2.0 * RIGIDITY}, step=0.05, points=6)
     aside = np.abs(found.state.displacement()[1:, 1])
     modulus = np.array([brentq(lambda k, u=each: 2.0 * k / ellipk(k * k) - u, 0.0, 0.9, xtol=1e-14) for each in aside])
     assert found.values[0] == pytest.approx(np.pi**2, rel=1e-7)
@@ -487,15 +487,15 @@ def test_a_pressed_guide_buckles_aside():
 
 def test_what_turns_does_not_branch():
     with pytest.raises(DesignError, match="nothing branches"):
-        branch(vee(), {"platform.fy": -1.0})
+        post_buckling_path(vee(), {"platform.fy": -1.0})
 
 
 def test_past_a_limit_the_load_is_found_again():
     """Asked for, a load beyond the limit is followed by arc length to where it is whole; else its case ends at the limit, and says so."""
     model, push = vee(), {"platform.fy": np.array([-40.0, -70.0])}
-    stopped, snapped = equilibrium(model, push), equilibrium(model, push, effort=Effort(past=True))
+    stopped, snapped = equilibrium(model, push), equilibrium(model, push, options=SolverOptions(past=True))
     assert stopped.converged.tolist() == [True, False]
-    assert stopped.reached[1] == pytest.approx(critical(model, {"platform.fy": -70.0}).factor, rel=5e-3)
+    assert stopped.reached[1] == pytest.approx(critical_load(model, {"platform.fy": -70.0}).factor, rel=5e-3)
     assert snapped.converged.all()
     assert unstable_motions(snapped).tolist() == [0, 0]
     assert snapped.displacement()[:, 1] == pytest.approx([stopped.displacement()[0, 1], -3.028e-3], rel=1e-3)

@@ -73,7 +73,7 @@ def test_calibrated_leaves_are_softened_as_drawn_ones():
     leaf = stage.parts["leaf"]
     assert isinstance(leaf, fs.Leaf)
     matrix = np.linalg.inv(stiffness(leaf, stage.materials["steel"]))
-    given = fs.Given(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), leaf.intended, replaces="drawn")
+    given = fs.ComplianceMatrix(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), leaf.intended, replaces="drawn")
     found = load_effect(replace(stage, parts={**stage.parts, "leaf": given, "drawn": leaf}))
     assert found is not None
     assert found.change == pytest.approx(-1.2 * weight / 0.06 / column(1e-9), rel=5e-3)
@@ -314,7 +314,7 @@ def test_the_error_over_strokes_is_that_of_kinematics_alone():
 
 @pytest.mark.parametrize(("dead", "stiffens"), [(1.5, 0.0), (100.0, 0.5), (1.5, 0.5)])
 def test_only_the_load_effect_says_which_stage_results_are_of(dead: float, stiffens: float):
-    doubts = Stability(np.array(dead), np.array(dead), np.zeros(1), np.array(stiffens), ("platform",), "by hand").cautions
+    doubts = Stability(np.array(dead), np.array(dead), np.zeros(1), np.array(stiffens), ("platform",), "by hand").warnings
     assert doubts
     assert not any("told of" in str(each) or "results are of" in str(each) for each in doubts)
 
@@ -322,6 +322,6 @@ def test_only_the_load_effect_says_which_stage_results_are_of(dead: float, stiff
 def test_stages_guided_by_given_matrices_have_a_stroke_and_no_second_order():
     stage = fs.case("spiral-stage")
     model = fs.nonlinear(stage)
-    found = fs.stroke(fs.path(model, "platform.z", np.array([0.0, 1e-3])))
-    assert found.cautions == ()
+    found = fs.stroke(fs.load_path(model, "platform.z", np.array([0.0, 1e-3])))
+    assert found.warnings == ()
     assert fs.analyse(stage).second_order is None

@@ -14,12 +14,12 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import CASES
 from flexstage.control.example import integral
 from flexstage.control.plant_models.coordinates import Coordinates
-from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Hardware, sampling_chain
 from flexstage.control.plant_models.plants import Plant, plant, zero_order_hold
 from flexstage.control.robustness.disk import DiskMargin, disk_margin, disk_margins
 from flexstage.control.robustness.stability import verdict
 from flexstage.control.robustness.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
-from flexstage.control.systems.closed import Cut, loop, open_at
+from flexstage.control.systems.closed import LoopBreak, loop, open_at
 from flexstage.control.systems.curves import sensitivity
 from flexstage.control.systems.sampling import first_order_hold
 from flexstage.control.systems.system import System, select
@@ -58,12 +58,12 @@ def test_seiler_packard_gahinet():
     There: gains up to 3.6, phase 29.1 degrees; symmetric disk margin 0.46, gains 0.63 to 1.59, phases to 25.8 degrees.
     """
     closed = _closed([25.0], [1.0, 10.0, 10.0, 10.0])
-    own = margins(closed, Cut.POSE).of("x")
+    own = margins(closed, LoopBreak.POSE).of("x")
     assert abs(own.gain_high.value - 3.6) < 1e-9  # 90/25, at omega^2 = 10
     assert abs((2.0 * np.pi * own.gain_high.frequency) ** 2 - 10.0) < 1e-9
     assert round(np.degrees(own.phase.value), 1) == 29.1
     assert round(own.disk.value, 2) == 0.46
-    found = disk_margins(closed, Cut.POSE)
+    found = disk_margins(closed, LoopBreak.POSE)
     assert (round(found.gain_low, 2), round(found.gain_high, 2)) == (0.63, 1.59)
     assert round(np.degrees(found.phase), 1) == 25.8
 
@@ -72,14 +72,14 @@ def test_a_loop_that_neither_grows_nor_decays_is_not_stable():
     """A pole at rest that no gain moves, beside one that decays."""
     found = verdict(_closed([0.0], [1.0, 1.0, 0.0]))
     assert not found.stable
-    assert found.least.growth == 0.0
+    assert found.slowest_pole.growth == 0.0
     assert np.isnan(found.gain_low)
 
 
 def test_skewed_disks():
     """With skew 1 the disk margin is 1/||S||, with -1 it is 1/||T|| (the same paper): the peaks of S and T."""
     closed = _closed([25.0], [1.0, 10.0, 10.0, 10.0])
-    own, found = sensitivity(open_at(closed, Cut.POSE)), peaks(closed, Cut.POSE)
+    own, found = sensitivity(open_at(closed, LoopBreak.POSE)), peaks(closed, LoopBreak.POSE)
     assert np.isclose(disk_margin(own, 1.0).value, 1.0 / found.sensitivity.value, rtol=1e-10)
     assert np.isclose(disk_margin(own, -1.0).value, 1.0 / found.complementary.value, rtol=1e-10)
 
@@ -96,7 +96,7 @@ def test_gain_and_phase_of_a_disk():
 def test_two_loops_that_are_one(skew):
     """A factor on either side of one loop: (1 + a)^2/(1 - a)^2 = (1 + b)/(1 - b) with b = 2a/(1 + a^2), so that |b| <= 2|a|/(1 - |a|^2)."""
     plain = _closed([25.0], [1.0, 10.0, 10.0, 10.0])
-    both, one = disk_margins(plain, None, skew), disk_margin(sensitivity(open_at(plain, Cut.POSE)), skew)
+    both, one = disk_margins(plain, None, skew), disk_margin(sensitivity(open_at(plain, LoopBreak.POSE)), skew)
     assert both.covered
     assert both.reached < one.value
     if skew == 0.0:
@@ -114,11 +114,11 @@ def _integrator(rate, gain, delay):
 def test_integrator_with_delay():
     """y[k+1] = y[k] + g T e[k]: the gain may grow to 2/T; with one sample more, x^2 - x + gT: to 1/T, at a sixth of the rate."""
     rate = 1000.0
-    own = margins(_integrator(rate, 100.0, 0.0), Cut.POSE).of("x")
+    own = margins(_integrator(rate, 100.0, 0.0), LoopBreak.POSE).of("x")
     # Read before the output arrives: what is held is one sample old, with delay 0 as with 1 sample less a little.
     assert np.isclose(own.gain_high.value, 1.0 / (100.0 / rate))
     assert np.isclose(own.gain_high.frequency, rate / 6.0)
-    later = margins(_integrator(rate, 100.0, 1.0 / rate), Cut.POSE).of("x")
+    later = margins(_integrator(rate, 100.0, 1.0 / rate), LoopBreak.POSE).of("x")
     assert np.isclose(later.gain_high.value, 2.0 * np.sin(np.pi / 10.0) / 0.1)  # z^2 (z - 1) + g T: at a tenth of the rate
     assert np.isclose(later.gain_high.frequency, rate / 10.0)
 
@@ -127,7 +127,7 @@ def test_the_gain_of_an_integrator_at_once_ends_at_half_the_rate():
     """A rectangle that the last sample ends, read a sample later: L = g T/(z - 1), real and negative at z = -1 only, so up to 2/(g T)."""
     rate, gain = 1000.0, 100.0
     one = _integrator(rate, gain, 0.0)
-    own = margins(loop(one.plant, replace(one.controller, D=one.controller.C)), Cut.POSE).of("x")
+    own = margins(loop(one.plant, replace(one.controller, D=one.controller.C)), LoopBreak.POSE).of("x")
     assert np.isclose(own.gain_high.value, 2.0 * rate / gain, rtol=1e-9)
     assert np.isclose(own.gain_high.frequency, 0.5 * rate, rtol=1e-9)
     assert own.gain_low.value == 0.0
@@ -143,7 +143,7 @@ def test_delay_margin_of_an_integrator():
 def test_delay_of_a_phase_that_leads():
     """L = g s^2/(s + 1)^3 leads by less than half a turn at both frequencies of gain 1: a delay goes the long way round to -1."""
     gain = 2.62
-    own = margins(_closed([gain, 0.0, 0.0], [1.0, 3.0, 3.0, 1.0]), Cut.POSE).of("x")
+    own = margins(_closed([gain, 0.0, 0.0], [1.0, 3.0, 3.0, 1.0]), LoopBreak.POSE).of("x")
     omega = np.sqrt(np.max(np.roots([1.0, 3.0 - gain**2, 3.0, 1.0]).real))  # g^2 w^4 = (1 + w^2)^3
     assert 3.0 * np.arctan(omega) < np.pi
     assert np.isclose(own.delay.value, (2.0 * np.pi - 3.0 * np.arctan(omega)) / omega, rtol=1e-10)
@@ -154,16 +154,16 @@ def test_no_delay_is_short_enough():
     """A continuous loop whose gain stays above 1 at ever higher frequencies bears no delay at all."""
     system = System(-np.eye(1), np.eye(1), np.array([[1.0]]), np.array([[2.0]]), METRE[:1], METRE[1:])
     closed = loop(_bare(-1e3 * np.eye(1), 1e3 * np.eye(1), np.eye(1)), system)
-    assert margins(closed, Cut.POSE).of("x").delay.value > 0.0
+    assert margins(closed, LoopBreak.POSE).of("x").delay.value > 0.0
     direct = _bare(np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)))
     at_once = loop(replace(direct, system=replace(direct.system, D=np.ones((2, 1)))), system)
-    assert margins(at_once, Cut.POSE).of("x").delay.value == delay_margin(at_once).value == 0.0
+    assert margins(at_once, LoopBreak.POSE).of("x").delay.value == delay_margin(at_once).value == 0.0
 
 
 def _sampled(rate, delay=0.0):
     stage = parallelogram()
     slow, seen = AmplifierSettings(bandwidth=500.0), GaugeSettings(bandwidth=2000.0)
-    given = hardware(stage, rate=rate, delay=delay if rate else 0.0, amplifiers=slow, gauges=seen)
+    given = sampling_chain(stage, rate=rate, delay=delay if rate else 0.0, amplifiers=slow, gauges=seen)
     one = plant(lumped(stage), ideal(stage), given, modes=2)
     return loop(one, integral(one, 150.0))
 
@@ -171,10 +171,10 @@ def _sampled(rate, delay=0.0):
 def test_sampling_is_of_first_order():
     """A sample of delay: the continuous loop in proportion to T. That counted: an integral of held samples, exact but for aliases."""
     at = np.array([3.0, 30.0, 200.0])
-    exact = open_at(_sampled(None), Cut.POSE).transfer(at)[:, 0, 0]
+    exact = open_at(_sampled(None), LoopBreak.POSE).transfer(at)[:, 0, 0]
     first, second = [], []
     for rate in (2e4, 4e4, 8e4):
-        found = open_at(_sampled(rate, 1.0 / rate), Cut.POSE).transfer(at)[:, 0, 0]
+        found = open_at(_sampled(rate, 1.0 / rate), LoopBreak.POSE).transfer(at)[:, 0, 0]
         first.append(np.abs(found - exact))
         second.append(np.abs(found - exact * np.exp(-2j * np.pi * at / rate)))
     for few, many in pairwise(first):
@@ -211,7 +211,7 @@ def test_straight_lines_between_samples_are_met_exactly():
 def test_every_stage_closes(name):
     """Every shipped stage whose strokes make its motions, in its own coordinates: under slow integral control, errors at rest vanish."""
     stage = CASES[name].build()
-    one = plant(lumped(stage), ideal(stage), hardware(stage, rate=5e3, delay=1e-4), modes=8)
+    one = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=5e3, delay=1e-4), modes=8)
     closed = loop(one, integral(one, 5.0))
     found = verdict(closed)
     assert found.stable, found.sentence
@@ -228,7 +228,7 @@ def test_plants_keep_static_gains(theory):
     stage = double_triangle()
     model = theory(stage)
     for modes in (6, None):
-        one = plant(model, ideal(stage), hardware(stage, rate=10e3), modes=modes)
+        one = plant(model, ideal(stage), sampling_chain(stage, rate=10e3), modes=modes)
         outputs = [*(f"gap.{name}" for name in one.gauges), "relative.x", "platform.x"]
         found = select(one.system, one.actuators, outputs).transfer(np.zeros(1))[0]
         wanted = static_gain(model, (*one.gauges, "platform.x", "platform.x"), one.actuators).values
@@ -238,7 +238,7 @@ def test_plants_keep_static_gains(theory):
 def test_platform_rides_on_the_ground():
     """The ground moved slowly: the platform goes with it, and nothing moves against it."""
     stage = parallelogram()
-    one = plant(lumped(stage), ideal(stage), hardware(stage), modes=4, points=("corner",))
+    one = plant(lumped(stage), ideal(stage), sampling_chain(stage), modes=4, points=("corner",))
     found = select(one.system, ["ground.x", "ground.rz"], ["platform.x", "relative.x", "corner.y", "relative.corner.y", "gap.S"])
     still = found.transfer(np.zeros(1))[0].real
     assert np.allclose(still[:, 0], [1.0, 0.0, 0.0, 0.0, 0.0], atol=1e-9)
@@ -248,8 +248,10 @@ def test_platform_rides_on_the_ground():
 
 def test_pairs_stay_together():
     stage = double_triangle()
-    assert len(plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3), modes=7).frequencies) == 9  # with a third one near to them
-    assert len(plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3), modes=1).frequencies) == 6
+    assert (
+        len(plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3), modes=7).frequencies) == 9
+    )  # with a third one near to them
+    assert len(plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3), modes=1).frequencies) == 6
 
 
 def test_bandwidths_of_an_integrator():
@@ -265,12 +267,12 @@ def test_what_cannot_be_controlled_is_refused():
     """Fewer strokes than motions, gauges that see too little, names that are not there: with numbers and directions."""
     floating = CASES["xy-stage-floating"].build()
     with pytest.raises(DesignError, match=r"1 actuators make 1 of the platform's 2 ideal motions; missing: y"):
-        plant(lumped(floating), ideal(floating), hardware(floating))
+        plant(lumped(floating), ideal(floating), sampling_chain(floating))
     stage = double_triangle()
     blind = replace(stage, gauges={"S1-S3": stage.gauges["S1-S3"]})
     with pytest.raises(DesignError, match=r"3 gauges tell 3 of the platform's 6 ideal motions; missing: "):
-        plant(lumped(blind), ideal(blind), hardware(blind))
-    whole = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3), modes=6)
+        plant(lumped(blind), ideal(blind), sampling_chain(blind))
+    whole = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3), modes=6)
     with pytest.raises(DesignError, match=r"its step is 0.001 s, the hardware's 0.0001 s"):
         loop(whole, replace(integral(whole, 1.0), step=1e-3))
     with pytest.raises(DesignError, match=r"it is continuous, the hardware sampled every 0.0001 s"):
@@ -278,9 +280,9 @@ def test_what_cannot_be_controlled_is_refused():
     with pytest.raises(DesignError, match=r"it has no output command\.B6"):
         loop(whole, select(integral(whole, 1.0), ["error.x"], [f"command.B{number}" for number in range(1, 6)]))
     with pytest.raises(DesignError, match="resistance needs its stack's capacitance, which is not stated"):
-        hardware(_without_capacitance(stage), amplifiers=AmplifierSettings(resistance=50.0))
+        sampling_chain(_without_capacitance(stage), amplifiers=AmplifierSettings(resistance=50.0))
     with pytest.raises(DesignError, match=r"the loop has no such pose"):
-        open_at(loop(whole, integral(whole, 1.0)), Cut.POSE, "w")
+        open_at(loop(whole, integral(whole, 1.0)), LoopBreak.POSE, "w")
 
 
 def _without_capacitance(stage):

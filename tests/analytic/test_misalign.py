@@ -13,7 +13,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.section import Rectangle
 from flexstage.show.displaced import misalign_report, misalignments_report
-from flexstage.show.viewer.course import misalign_data
+from flexstage.show.viewer.animation import misalign_data
 from flexstage.spatial.rotation import exponential
 from tests.laws.test_nonlinear import guide
 

@@ -7,7 +7,7 @@ import pytest
 import scipy
 
 from flexstage.beams.mass import mass
-from flexstage.parts.given import Given, Joint
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -103,7 +103,7 @@ def test_toroid_and_stack_moved_rigidly():
 def test_parts_without_shape():
     """A given part has half its mass at each end; joints and restricted parts have none."""
     unit = tuple(tuple(float(i == j) for j in range(6)) for i in range(6))
-    found = mass(Given(unit, free=(), mass=3.0), None)
+    found = mass(ComplianceMatrix(unit, free=(), mass=3.0), None)
     np.testing.assert_array_equal(np.diag(found), [1.5, 1.5, 1.5, 0.0, 0.0, 0.0] * 2)
     assert not mass(Joint(), None).any()
     assert not mass(Restricted(Rod("m", length=1.0, diameter=0.1), elastic=()), BEAM).any()

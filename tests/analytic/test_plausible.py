@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.cautions import caveats
+from flexstage.analysis.caveats import caveats
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.store import loads, shipped_catalogue
 from flexstage.parts.plausible import implausible
@@ -41,7 +41,7 @@ def test_nothing_shipped_is_doubted() -> None:
         assert len(entries) > 1
         assert [str(finding) for finding in implausible(entries.items())] == []
     for name in sorted(set(CASES) - {"telescope-mount"}):  # its source gives the struts' material a mass that it does not have
-        assert not any("plausible" in each.what for each in caveats(case(name, {})).cautions), name
+        assert not any("plausible" in each.what for each in caveats(case(name, {})).warnings), name
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def test_a_load_that_no_part_bears_is_told() -> None:
         bodies={"platform": fs.Body(mass=2000.0, centre=(0.0, 0.0, 0.036), inertia=fs.Inertia(1.0, 1.0, 1.0))},
         links={"pzt": fs.Link(("ground", "platform"), "stack", (0.0, 0.0, 0.018), (0.0, 0.0, 1.0))},
     )
-    assert "9.81 times its maximum load" in {each.where: each.what for each in caveats(stage).cautions}["pzt"]
+    assert "9.81 times its maximum load" in {each.where: each.what for each in caveats(stage).warnings}["pzt"]
 
 
 def test_no_ball_of_osmium_is_doubted() -> None:
@@ -114,12 +114,12 @@ def test_no_ball_of_osmium_is_doubted() -> None:
         ("gravity", (0.0, 0.0, -9.80665e-3), "gravity"),
         ("envelope", (160.0, 0.08, 0.025), "envelope.x"),
         ("payloads", {"mirror": fs.Payload("platform", 0.01, (0.0, 0.0, 0.0), fs.Inertia(5.0, 5.0, 5.0))}, "payloads.mirror.inertia"),
-        ("opening", fs.Opening((0.1e-3, 0.1e-3)), "opening.size"),
+        ("opening", fs.Aperture((0.1e-3, 0.1e-3)), "opening.size"),
     ],
 )
 def test_what_does_not_fit_the_stage_is_told(path: str, value: object, where: str) -> None:
     stage = replace(case("parallelogram", {}), **{path: value})
-    told = [each.where for each in caveats(stage).cautions if "not plausible" in each.what]
+    told = [each.where for each in caveats(stage).warnings if "not plausible" in each.what]
     assert told == [where]
 
 
@@ -127,12 +127,12 @@ def test_a_point_far_outside_is_told_wherever_the_stage_stands() -> None:
     stage = case("parallelogram", {})
     body = stage.bodies["platform"]
     far = replace(stage, bodies={**stage.bodies, "platform": replace(body, points={"corner": (30.0, 0.0, 0.0)})})
-    assert [each.where for each in caveats(far).cautions if "not plausible" in each.what] == ["platform.points.corner"]
+    assert [each.where for each in caveats(far).warnings if "not plausible" in each.what] == ["platform.points.corner"]
 
 
 def test_a_link_farther_away_than_any_stage_is_large_is_told() -> None:
     """By a slip of the power of ten it stands 27 km away."""
     stage = case("parallelogram", {})
     links = {name: replace(link, at=(-27e3, 0.0, 0.0)) if name == "left" else link for name, link in stage.links.items()}
-    told = {each.where: each.what for each in caveats(replace(stage, links=links)).cautions if "not plausible" in each.what}
+    told = {each.where: each.what for each in caveats(replace(stage, links=links)).warnings if "not plausible" in each.what}
     assert told["left"].startswith("it stands 2.7e+04 m from the platform")

@@ -11,7 +11,7 @@ from flexstage.control.study.choices import ControllerKind, OfferedKind
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
-from flexstage.control.systems.closed import Cut, loop
+from flexstage.control.systems.closed import LoopBreak, loop
 
 
 def poles_around(law, frequency, static):
@@ -46,7 +46,7 @@ def test_resonant_control_follows_as_far_as_published():
         given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(kind=kind)))
         closed = loop(given.plant, make_controller(given, given.plant.coordinates.strokes).system)
         assert bandwidths(closed).tracking[0] > 490.0 / 934.0 * given.highest
-        assert peaks(closed, Cut.POSE).sensitivity.value <= 2.0
+        assert peaks(closed, LoopBreak.POSE).sensitivity.value <= 2.0
 
 
 def test_what_cannot_be_is_said():

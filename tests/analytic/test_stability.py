@@ -219,12 +219,12 @@ def test_a_squeezed_body_turns_about_the_line_of_its_forces_for_nothing():
 def test_a_load_factor_is_told_as_stiffness_and_frequency(factor: float, softer: str, slower: str) -> None:
     """Of the stiffness 1/factor is gone, of the frequency 1 - (1 - 1/factor)^(1/2)."""
     found = replace(of(leaves(1.0)), dead=np.array(factor), worst=np.array(factor), stiffens=np.zeros(()))
-    (told,) = found.cautions
+    (told,) = found.warnings
     assert f"is {softer} less stiff than the drawn one, its frequency {slower} lower" in told.what
     assert not found.refusals
-    (worse,) = replace(found, dead=np.array(100.0)).cautions
+    (worse,) = replace(found, dead=np.array(100.0)).warnings
     assert f"up to {softer} less stiff than printed, a frequency {slower} lower" in worse.what
-    assert len(replace(found, worst=np.array(0.9 * factor)).cautions) == 2  # the strokes take a tenth of it more
+    assert len(replace(found, worst=np.array(0.9 * factor)).warnings) == 2  # the strokes take a tenth of it more
 
 
 def test_a_repeated_load_factor_names_the_bodies_of_all_its_shapes():

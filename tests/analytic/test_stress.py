@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexstage.beams.stress import stress
-from flexstage.parts.given import Joint
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch

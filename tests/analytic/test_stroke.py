@@ -14,7 +14,7 @@ from tests.laws.test_nonlinear import guide
 
 
 def test_stiffness_is_the_slope_of_force():
-    found = fs.stroke(fs.path(fs.nonlinear(guide()), "platform.y", np.linspace(0.019, 0.021, 21))).along
+    found = fs.stroke(fs.load_path(fs.nonlinear(guide()), "platform.y", np.linspace(0.019, 0.021, 21))).along
     force, stiffness = (found.values[:, found.columns.index(name)] for name in ("force", "stiffness"))
     slope = np.gradient(force, 1e-4, edge_order=2)[1:-1]
     assert stiffness[1:-1] == pytest.approx(slope, rel=1e-4)
@@ -23,7 +23,7 @@ def test_stiffness_is_the_slope_of_force():
 
 def test_at_rest_its_stiffness_and_frequencies_are_those_of_the_drawn_stage():
     stage = parallelogram()
-    found = fs.stroke(fs.path(fs.nonlinear(stage), "platform.x", np.array([0.0, 1e-4]), weight=0.0)).along
+    found = fs.stroke(fs.load_path(fs.nonlinear(stage), "platform.x", np.array([0.0, 1e-4]), weight=0.0)).along
     small = fs.lumped(stage)
     assert found.at("1", "f1") == pytest.approx(fs.modes(small).frequencies[0], rel=1e-4)
     compliance = fs.statics(small).compliance
@@ -33,7 +33,7 @@ def test_at_rest_its_stiffness_and_frequencies_are_those_of_the_drawn_stage():
 def test_what_the_drawn_stage_cannot_tell_of_long_travel():
     """Weight W on four leaves: 6 W / (5 L) softer; 3 u^2 / (5 L) lower after u; and stiffer there, as its wide leaves curve across."""
     stage = fs.case("long-travel-xy")
-    found = fs.stroke(fs.path(fs.nonlinear(stage), "platform.x", np.array([0.0, 5e-3]))).along
+    found = fs.stroke(fs.load_path(fs.nonlinear(stage), "platform.x", np.array([0.0, 5e-3]))).along
     drawn = 1.0 / fs.statics(fs.lumped(stage)).compliance.at("platform.x", "platform.fx")
     weight = 9.80665 * (1.0 + 2810.0 * (0.08 * 0.114 + 2.0 * (0.156 + 0.124) * 0.014) * 0.012 + 0.37)  # load, table, frame, coils
     assert found.at("1", "stiffness") == pytest.approx(drawn - 1.2 * weight / 0.08, rel=0.02)
@@ -42,7 +42,7 @@ def test_what_the_drawn_stage_cannot_tell_of_long_travel():
 
 
 def test_what_is_beyond_theory_is_told():
-    told = fs.stroke(fs.path(fs.nonlinear(guide()), "platform.y", np.array([0.0, 0.08]))).cautions
+    told = fs.stroke(fs.load_path(fs.nonlinear(guide()), "platform.y", np.array([0.0, 0.08]))).warnings
     assert told[0].where == "left"
     assert "strain" in told[0].what
 
@@ -51,21 +51,21 @@ def test_what_is_beyond_theory_is_told():
 def test_stress_above_the_limit_of_the_material_is_told(limits: dict[str, float]):
     whole = guide()
     weak = replace(whole, materials={name: replace(each, **limits) for name, each in whole.materials.items()})
-    found = fs.stroke(fs.path(fs.nonlinear(weak), "platform.y", np.array([1e-4, 4e-3])))
+    found = fs.stroke(fs.load_path(fs.nonlinear(weak), "platform.y", np.array([1e-4, 4e-3])))
     assert found.along.at("1", "stress") < 1e8 < found.along.at("2", "stress")
-    assert "limit is 100 MPa" in found.cautions[0].what
+    assert "limit is 100 MPa" in found.warnings[0].what
 
 
 def test_weight_is_a_load_that_grows():
     """The guide upright, 1 kg on two leaves: 2 pi^2 E I / (L^2 m g), but for what plate action adds."""
-    found = fs.critical(fs.nonlinear(guide(gravity=(-9.80665, 0.0, 0.0))), {"weight": 1.0}, weight=0.0)
+    found = fs.critical_load(fs.nonlinear(guide(gravity=(-9.80665, 0.0, 0.0))), {"weight": 1.0}, weight=0.0)
     slender = 2.0 * np.pi**2 * 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**2 / 9.80665
     assert 1.0 < found.factor / slender < 1.1
 
 
 def test_options_bring_a_stage_where_it_is_to_be():
     stage = parallelogram()
-    about = footing(stage, Place(["platform.x=0.2 mm"], ["platform.fy=5 N"])).stance
+    about = footing(stage, Place(["platform.x=0.2 mm"], ["platform.fy=5 N"])).operating_point
     model = fs.nonlinear(stage)
     sag = float(fs.equilibrium(model, {"platform.fy": 5.0}).displacement()[0])
     same = fs.linearise(fs.equilibrium(model, {"platform.fy": 5.0}, hold={"platform.x": sag + 2e-4}))
@@ -85,7 +85,7 @@ def test_loads_past_what_a_stage_bears_are_told_with_how_far_it_stays():
     """Two slender leaves buckle at 2 pi^2 E I / L^2; a quarter of five times that is past it, three sixteenths are not."""
     slender = 2.0 * np.pi**2 * 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**2
     with pytest.raises(fs.DesignError, match=r"loads, or strokes, the stage leaves in .* up to 19% of the way it stays"):
-        fs.stance(guide(), loads={"platform.fx": -5.0 * slender})
+        fs.operating_point(guide(), loads={"platform.fx": -5.0 * slender})
 
 
 def test_what_stays_locked_is_said_once():
@@ -94,6 +94,6 @@ def test_what_stays_locked_is_said_once():
 
 
 def test_what_is_bent_beyond_the_theory_is_told():
-    told = " ".join(each.what for each in fs.stance(guide(), {"platform.y": 90e-3}).cautions)
+    told = " ".join(each.what for each in fs.operating_point(guide(), {"platform.y": 90e-3}).warnings)
     assert "beyond which no linear elastic law is physics" in told
     assert "two shapes across its width do not suffice" in told

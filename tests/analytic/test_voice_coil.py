@@ -10,7 +10,7 @@ import pytest
 from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.complete import analyse
 from flexstage.analysis.dynamics.response import response
-from flexstage.analysis.workspace.reach import reach
+from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.base.finding import DesignError
 from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.registry import case
@@ -142,7 +142,7 @@ def test_reach_is_the_least_limit_over_stiffness():
     """Held for ever heat ends it at sqrt(60 K / (5 K/W 6 ohm)) = 1.414 A; a quarter of the time the voltage does, at 12 V / 6 ohm = 2 A."""
     mechanism = stage(LIMITED)
     model = lumped(mechanism)
-    found = reach(mechanism, ideal(mechanism), model)
+    found = force_workspace(mechanism, ideal(mechanism), model)
     per_ampere = static_gain(model, ("platform.x",), ("motor",)).values.item()
     by_cause = dict(zip(found.bounds.columns, found.bounds.values[0] / per_ampere, strict=True))
     expected = {"peak current": 4.0, "continuous current": 1.8, "heat": 2.0**0.5, "voltage": 2.0, "maximum force": 40.0 / 12.0}
@@ -156,7 +156,7 @@ def test_reach_is_the_least_limit_over_stiffness():
 def test_a_coil_does_not_bound_what_it_does_not_move():
     """Crosstalk that is rounding is no slope: the other axis' coil never reaches its limit."""
     mechanism = case("voice-coil-xy")
-    found = reach(mechanism, ideal(mechanism), lumped(mechanism))
+    found = force_workspace(mechanism, ideal(mechanism), lumped(mechanism))
     for axis, other, row in zip(found.bounds.rows, ("D2", "D1"), np.isinf(found.bounds.values), strict=True):
         assert row.tolist() == [cause.startswith(other) for cause in found.bounds.columns], axis
     assert np.count_nonzero(found.per_motion.values) == 2
@@ -181,19 +181,19 @@ def pushed(rods: bool, along: tuple[float, float, float]) -> Mechanism:
 def test_motions_that_no_force_causes_have_no_reach(rods, along, moved, unmoved):
     """A gain of zero, or of rounding, is none: neither a failure nor a stroke of 1e-23 m."""
     mechanism = pushed(rods, along)
-    found = reach(mechanism, ideal(mechanism), lumped(mechanism))
+    found = force_workspace(mechanism, ideal(mechanism), lumped(mechanism))
     assert (found.coordinates, found.unmoved) == ((moved,), tuple(unmoved.split()))
     assert 0.0 < found.held.item() <= 10.0 * static_gain(lumped(mechanism), (f"platform.{moved}",), ("motor",)).values.item() * (1 + 1e-9)
     verdict = judge(replace(mechanism, requirements={"stroke.y": "at least 1 um"}))[0]
     assert verdict.value is None
     assert "no actuator moves it" in verdict.reason
-    assert analyse(mechanism).reach is not None
+    assert analyse(mechanism).force_workspace is not None
 
 
 def test_a_stage_that_no_force_moves_is_refused():
     mechanism = pushed(rods=True, along=X)
     with pytest.raises(DesignError, match=r"no actuator moves platform along any ideal motion \(y, z, rx\)"):
-        reach(mechanism, ideal(mechanism), lumped(mechanism))
+        force_workspace(mechanism, ideal(mechanism), lumped(mechanism))
 
 
 def test_designs_whose_force_turns_off_a_motion_have_none_of_it():
@@ -202,7 +202,7 @@ def test_designs_whose_force_turns_off_a_motion_have_none_of_it():
     angles = np.array([0.0, 0.3, 0.5 * np.pi])
     motor = replace(mechanism.links["motor"], along=(np.array([1.0, np.cos(0.3), 0.0]), np.array([0.0, np.sin(0.3), 1.0]), 0.0))
     several = replace(mechanism, links={**mechanism.links, "motor": motor})
-    found = reach(several, ideal(several), lumped(several))
+    found = force_workspace(several, ideal(several), lumped(several))
     assert found.coordinates == ("x", "y")
     expected = np.stack([10.0 * np.abs(np.cos(angles)) / 1e4, 10.0 * np.abs(np.sin(angles)) / 2e4], axis=-1)
     expected[[0, 2], [1, 0]] = np.nan
@@ -212,7 +212,7 @@ def test_designs_whose_force_turns_off_a_motion_have_none_of_it():
 def test_travel_and_a_stress_end_the_reach_too():
     """A coil of 0.2 mm travel goes 0.1 mm either way; where nothing is stated, nothing is known, and a requirement says so."""
     short = stage(replace(COIL, travel=0.2 * mm))
-    found = reach(short, ideal(short), lumped(short))
+    found = force_workspace(short, ideal(short), lumped(short))
     assert (found.held.item(), found.limited_by) == (pytest.approx(0.1 * mm, rel=1e-9), ("motor travel",))
     verdict = judge(replace(stage(), requirements={"stroke.x": "at least 50 um"}))[0]
     assert verdict.value is None
@@ -225,7 +225,7 @@ def test_yield_of_the_leaves_ends_the_reach():
     steel = replace(mechanism.materials["steel"], yield_stress=3.0 * YOUNG * THICKNESS * 0.5 * mm / LENGTH**2)
     leaf = replace(mechanism.parts["leaf"].part, width=1.0 * mm)
     free = replace(mechanism, materials={"steel": steel}, parts={**mechanism.parts, "leaf": leaf}, gravity=(0.0, 0.0, 0.0))
-    found = reach(free, ideal(free), lumped(free))
+    found = force_workspace(free, ideal(free), lumped(free))
     assert found.limited_by == ("yield stress",)
     assert found.held.item() == pytest.approx(0.5 * mm, rel=0.05)
 
@@ -250,7 +250,7 @@ def test_redundant_coils_share_by_their_limits():
     single = stage(one)
     links = {**single.links, "second": Link((PLATFORM, GROUND), "strong", (40 * mm, 0.0, 0.0), X)}
     both = replace(single, parts={**single.parts, "strong": two}, links=links)
-    alone, together = (reach(each, ideal(each), lumped(each)) for each in (single, both))
+    alone, together = (force_workspace(each, ideal(each), lumped(each)) for each in (single, both))
     assert together.current.values[0] == pytest.approx([1.0, 3.0], rel=1e-9)
     assert together.held.item() == pytest.approx(4.0 * alone.held.item(), rel=1e-9)
 
@@ -259,5 +259,5 @@ def test_the_report_shows_the_reach():
     """Where strokes would stand: how far, and what holding it takes."""
     shown = workspace_section(analyse(stage(LIMITED)))
     assert shown is not None
-    assert shown.title == "Reach"
+    assert shown.title == "Force workspace"
     assert [each.title for each in shown.blocks] == ["Reach", "What holding it takes"]

@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.assessment.judge import judge
-from flexstage.analysis.cautions import caveats
+from flexstage.analysis.caveats import caveats
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Ends, buckling
 from flexstage.analysis.workspace.clearance import clearance
@@ -122,7 +122,7 @@ def test_force_on_the_stage_counts_the_stroke_lost_in_the_stack():
     line = stack_lines(stage, model)
     low, high = load_share(stage, model).range(stroke_limits(stage).from_zero)
     assert line.stiffness == pytest.approx(STACK.stiffness)
-    series = 1.0 / (1.0 / line.against + 1.0 / line.stiffness)
+    series = 1.0 / (1.0 / line.stage_stiffness + 1.0 / line.stiffness)
     np.testing.assert_allclose(np.concatenate([low, high]), series * 20e-6 * np.array([-1.0, 5.0]) / 6.0, rtol=1e-9)
 
 
@@ -139,8 +139,8 @@ def test_a_stack_against_a_spring():
     leaves = 2.0 * 12.0 * 200e9 * 0.002 * 0.0005**3 / 12.0 / 0.05**3
     rod = 200e9 * np.pi / 4.0 * 0.001**2 / 0.02
     spring = 1.0 / (1.0 / leaves + 1.0 / rod)
-    assert found.against[0] == pytest.approx(spring, rel=0.01)
-    assert found.travel[0] == pytest.approx(20e-6 * 50e6 / (50e6 + found.against[0]), rel=1e-12)
+    assert found.stage_stiffness[0] == pytest.approx(spring, rel=0.01)
+    assert found.travel[0] == pytest.approx(20e-6 * 50e6 / (50e6 + found.stage_stiffness[0]), rel=1e-12)
     assert found.blocking[0] == pytest.approx(1000.0)
     line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))
     series = 1.0 / (1.0 / 50e6 + 1.0 / rod) + leaves
@@ -279,7 +279,7 @@ def test_discs_and_boxes_against_the_opening():
     clear = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.01, 0.0, 0.0))
     corner = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.0095 * np.sqrt(0.5), half + 0.0095 * np.sqrt(0.5), 0.0))
     lying = fs.Cylinder("steel", 0.02, 0.1, at=(0.0, half + 0.008, 0.0), along=X)
-    found = clearance(solids(disc, clear, corner, lying, opening=fs.Opening((0.11, 0.11))))
+    found = clearance(solids(disc, clear, corner, lying, opening=fs.Aperture((0.11, 0.11))))
     assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s2", "platform.s3"]
     np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.0005, 0.002], rtol=1e-9)
 
@@ -288,7 +288,7 @@ def test_an_oblong_opening_is_as_long_and_wide_as_it_says():
     """110 mm along x, 70 mm along y: blocks that stand 1 mm and 2 mm into it, and two beside it."""
     places = [(0.064, 0.0, 0.0), (0.0, 0.043, 0.0), (-0.065, 0.0, 0.0), (0.0, -0.045, 0.0)]
     blocks = [fs.Block("steel", (0.02, 0.02, 0.01), at=place) for place in places]
-    found = clearance(solids(*blocks, opening=fs.Opening((0.11, 0.07))))
+    found = clearance(solids(*blocks, opening=fs.Aperture((0.11, 0.07))))
     assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s1"]
     np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.002], rtol=1e-9)
 
@@ -300,10 +300,10 @@ def test_holes_and_bores_leave_the_opening_clear():
     narrow = fs.Cylinder("steel", 0.2, 0.01, bore=0.15)
     wheel = fs.Cylinder("steel", 0.2, 0.01, along=X, bore=0.18)
     wall = fs.Block("steel", (0.2, 0.2, 0.01), hole=(0.19, 0.19), along=Z, up=X)
-    found = clearance(solids(plate, ring, narrow, opening=fs.Opening((0.11, 0.11))))
+    found = clearance(solids(plate, ring, narrow, opening=fs.Aperture((0.11, 0.11))))
     assert [item.name for item in found.intrusions] == ["platform.s2"]
     for standing in (wheel, wall):
-        (intrusion,) = clearance(solids(standing, opening=fs.Opening((0.11, 0.11)))).intrusions
+        (intrusion,) = clearance(solids(standing, opening=fs.Aperture((0.11, 0.11)))).intrusions
         assert intrusion.depth == pytest.approx(0.055 + 0.005, rel=1e-9)
 
 
@@ -360,7 +360,7 @@ def test_the_pseudo_inverse_lets_complex_steps_through_and_stays_exact_for_gauge
 def test_motions_that_are_not_small_are_told_and_verdicts_on_them_withheld():
     """Leaves of 50 mm: beyond sqrt(2 x 1 %) of their length linear models are 1 % off; a demand below that is judged."""
     far = guide(replace(STACK, stroke=30e-3, bias=None), requirements={"stroke.x": "at least 8 mm", "safety": "at least 0.1"})
-    (told,) = (each for each in caveats(far).cautions if each.where == "stroke.x")
+    (told,) = (each for each in caveats(far).warnings if each.where == "stroke.x")
     assert "bends by 0.3 of its length" in told.what
     assert told.advice == f"Count on +-{np.sqrt(0.02) * 0.05:.4g} m"
     stroke, safety = judge(far)

@@ -39,9 +39,9 @@ Command = Callable[..., Ended]
 
 
 def told_everywhere(ended: Ended, document: Path, report: Path) -> str:
-    """All cautions of a document, each of which the terminal and the report tell too."""
+    """All warnings of a document, each of which the terminal and the report tell too."""
     found = json.loads(document.read_text(encoding="utf-8"))
-    said = [each if isinstance(each, str) else each["what"] for each in (*found["cautions"], *found.get("warnings", ()))]
+    said = [each if isinstance(each, str) else each["what"] for each in (*found["warnings"], *found.get("data_warnings", ()))]
     page = html.unescape(report.read_text(encoding="utf-8")).replace("\N{MINUS SIGN}", "-")
     for place in (ended.out + ended.err, page):
         assert [each for each in said if each not in place] == []

@@ -58,7 +58,7 @@ class Page:
                 self._news.clear()
                 await self._news.wait()
 
-    async def settle(self, last=say.Cautions):
+    async def settle(self, last=say.Warnings):
         """Wait until the present text is computed."""
         await self.until(lambda page: say.State in page.told and page.state.revision >= page.revision)
         await self.until(lambda page: last in page.told and page.told[last].revision == page.state.revision)

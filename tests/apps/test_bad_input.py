@@ -114,7 +114,7 @@ def test_all_findings_are_told_at_once(flexstage: Command, tmp_path: Path) -> No
     found = flexstage("check", "stage.toml", "--json", "-")
     assert found.code == 2
     assert found.document["sound"] is False
-    assert len(found.document["findings"]) == found.err.count("\n  ")
+    assert len(found.document["errors"]) == found.err.count("\n  ")
 
 
 def test_large_files_are_refused_at_once(flexstage: Command, tmp_path: Path) -> None:

@@ -178,7 +178,7 @@ def test_analyse_nests_the_documents_of_the_commands(flexstage: Command) -> None
         alone = flexstage(name, "stage.toml", "--json", "-").document
         common = {key: value for key, value in alone.items() if key in whole[name]}
         assert whole[name] == common, name
-        beside = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "loaded", "second_order"}
+        beside = {"format", "kind", "version", "name", "model", "physics_digest", "warnings", "defaults", "loaded", "second_order"}
         assert set(alone) - set(common) <= beside
         assert alone.get("loaded", whole["loaded"]) == whole["loaded"]
         assert ("second_order" in alone) == (name in ("workspace", "budget"))
@@ -227,7 +227,7 @@ def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:
     assert document["physics_digest"] != digest(double_triangle(), physics=True)
 
 
-ENVELOPE = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "method", "provenance", "reasons"}
+ENVELOPE = {"format", "kind", "version", "name", "model", "physics_digest", "warnings", "defaults", "method", "provenance", "reasons"}
 ENVELOPE |= {"loaded", "second_order"}  # sections of their own
 
 

@@ -13,7 +13,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.addresses.address import set_text
 from flexstage.mechanism.mechanism import NamedNumber
 from flexstage.mechanism.store import dump, loads
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.stage_text import design_text, write_optimum
 from flexstage.studies.sweeps.execution.evaluate import piece
@@ -69,12 +69,12 @@ def test_an_optimum_of_a_number_is_written_to_the_number(folder: Path) -> None:
     found = []
     for name in ("name", "values"):
         study = load_study(folder / f"{name}.toml")
-        found.append(optimise(study, load_wanted(study)).point)
+        found.append(optimise(study, load_optimisation(study)).point)
     assert found[0] is not None
     assert np.allclose(found[0].shares, found[1].shares, atol=1e-9)
     assert np.allclose(found[0].gradient, found[1].gradient, rtol=1e-9)
     study = load_study(folder / "name.toml")
-    text = write_optimum(design_text(study, folder), study, load_wanted(study), [0.0014])
+    text = write_optimum(design_text(study, folder), study, load_optimisation(study), [0.0014])
     assert 'thickness = "thin"' in text
     assert 'thin = "1.4 mm"' in text
     stage = loads(text)
@@ -106,7 +106,7 @@ def test_assignments_move_what_depends_on_a_number_and_say_what_formula_they_tak
     assert "--set numbers.thin=1.1 N" in ended.err
 
 
-def test_a_number_that_nothing_refers_to_is_a_caution(folder: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> None:
+def test_a_number_that_nothing_refers_to_is_a_warning(folder: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> None:
     flexstage = command_in(folder, monkeypatch, capfdbinary)
     text = (folder / "stage.toml").read_text().replace("[numbers]", '[numbers]\nspare = "3 mm"')
     (folder / "stage.toml").write_text(text)

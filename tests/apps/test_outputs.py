@@ -188,7 +188,7 @@ def test_stdout_holds_the_document_only(flexstage: Command) -> None:
     assert ended.document["kind"] == "analyse"
     assert (
         "thickness over radius = 0.944 is above 0.8"
-        in {each["where"]: each["what"] for each in ended.document["cautions"]}["parts.foot_notch"]
+        in {each["where"]: each["what"] for each in ended.document["warnings"]}["parts.foot_notch"]
     )
     assert "Wrote out.mat" in ended.err
 

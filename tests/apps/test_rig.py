@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.experiment import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
+from flexstage.experiment import Amplifier, AntiAlias, InputQuantity, InputSignal, NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.records.record import Record
 from flexstage.experiment.virtual_rig.samples import Simulated
@@ -62,8 +62,8 @@ def test_every_option_is_heard(flexstage: Command, tmp_path: Path) -> None:
         amplifier=Amplifier(resistance=1000.0, current=0.1),
         filter=AntiAlias(4, 500.0),
         sensing=Sensing(density=1e-10, resolution=1e-9),
-        tap=Tap.COMMAND,
-        recorded=Recorded.VOLTAGE,
+        input_signal=InputSignal.COMMAND,
+        input_quantity=InputQuantity.VOLTAGE,
     )
     np.testing.assert_array_equal(record(tmp_path / "record.h5").values, fs.experiment.rig(stage, fs.mapped(stage), setup).values)
     assert "slowest amplifier or gauge 122.4 Hz" in " ".join(ended.out.split())

@@ -161,7 +161,7 @@ def test_a_stage_without_units_of_its_own(command: Command, tmp_path: Path) -> N
 def test_a_stand_in_for_a_part_that_is_gone(command: Command, tmp_path: Path) -> None:
     stage = small()
     unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    leaf = fs.Given(unit, free=stage.parts["leaf"].intended, replaces="gone")
+    leaf = fs.ComplianceMatrix(unit, free=stage.parts["leaf"].intended, replaces="gone")
     fs.dump(replace(stage, parts={**stage.parts, "leaf": leaf}), tmp_path / "lost.toml")
     ended = command("solid", "lost.toml")
     assert ended.code == 2

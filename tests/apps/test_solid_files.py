@@ -14,9 +14,9 @@ from netgen import occ
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dump, dumps, load
 from flexstage.parts.body import Body, Inertia
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.condensation import condense
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.superelement import Superelement
 from flexstage.solid.fea.geometry.imported import import_findings

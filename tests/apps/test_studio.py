@@ -570,7 +570,7 @@ def test_a_followed_number_gives_the_design_that_the_text_says():
 def test_strokes_stress_and_buckling_at_rest_are_those_of_the_workspace(stage):
     text = dumps(stage)
     whole = workspace(stage, ideal(stage), lumped(stage), lost=lost_motion(ideal(stage), lumped(stage)))
-    wanted = [*whole.corrected.symmetric.tolist(), float(whole.stress.least), float(whole.buckling.least)]
+    wanted = [*whole.corrected.symmetric.tolist(), float(whole.stress.min_safety), float(whole.buckling.min_factor)]
     told = reach(text, "", text, 1)
     assert [each.value for each in told.figures] == wanted
     assert ([each.low for each in told.strokes], told.missing) == (whole.corrected.low.tolist(), {})

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.execution.run import PIECE, Run, require_memory, sweep
 from flexstage.studies.sweeps.execution.store import folder_of, read_results
 from flexstage.studies.sweeps.file import load_study, loads_study
@@ -147,7 +147,7 @@ def test_columns_of_all_studies_have_names_of_their_own():
         loads_tolerance(SCATTERED.replace("NAME", copy))
     text = f'{STUDY}\n[optimise]\nmaximise = ["f"]\nminimise = ["g"]'.replace("responses.f", 'responses.g = "frequency.1"\nresponses.f')
     with pytest.raises(DesignError, match='"g" is the same measure as "f", an objective already'):
-        load_wanted(loads_study(text))
+        load_optimisation(loads_study(text))
     study = loads_study(STUDY)
     with pytest.raises(DesignError, match='a column "young" already'):
         sweep(replace(study, responses={"young": study.responses["f"]}), "nowhere.h5")

@@ -36,7 +36,7 @@ from flexstage.apps.studio.wire import encode
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.store import dumps
 from flexstage.show.viewer.data import still_data
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.file import loads_study
 from tests.browser.conftest import Watch
 from tests.hygiene.source import SRC
@@ -99,7 +99,7 @@ def state(revision: int, text: str = TEXT, *, page: int = 0, problems: tuple[Pro
     saved = text == TEXT
     return State(
         revision, page, "leaf.toml", "one leaf", text, digest="", saved=saved, sound=not problems, changed=0, undo=True, redo=False,
-        problems=problems, cautions=(), amounts=(amount,), actuators=(), axes=(), gauges=(), inputs=(), outputs=(),
+        problems=problems, warnings=(), amounts=(amount,), actuators=(), axes=(), gauges=(), inputs=(), outputs=(),
         links={"leaf": 4}, paths=(), pins=(), unprotected="", drafts=(),
     )  # fmt: skip
 
@@ -332,7 +332,7 @@ def test_the_study_that_is_offered_can_be_run(page: Page, server: Server, tmp_pa
     if name == "Sweep":
         assert found.plan is not None
     else:
-        load_wanted(found)
+        load_optimisation(found)
 
 
 def test_a_lost_connection_is_told_and_taken_up_again(page: Page, server: Server) -> None:

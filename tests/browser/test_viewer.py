@@ -281,8 +281,8 @@ def test_many_links_are_drawn_picked_and_turned(sheet: Page, count: int) -> None
 
 def test_a_path_plays_and_its_cursor_follows(opened: Open, tmp_path: Path) -> None:
     stage = fs.case("parallelogram")
-    path = fs.path(fs.nonlinear(stage), "platform.x", np.linspace(0.0, 3e-3, 3), weight=0.0)
-    page = shown(opened(fs.play(stage, path).save(tmp_path / "path.html"), reduced_motion="reduce"))
+    path = fs.load_path(fs.nonlinear(stage), "platform.x", np.linspace(0.0, 3e-3, 3), weight=0.0)
+    page = shown(opened(fs.animate(stage, path).save(tmp_path / "path.html"), reduced_motion="reduce"))
     viewer = f"{PLACE}.flexstage"
     figures = f"{viewer}.curves.shadowRoot"
     seen = []

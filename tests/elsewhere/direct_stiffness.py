@@ -15,10 +15,10 @@ import numpy as np
 
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
-from flexstage.mechanism.assembly.pattern import Facing, Polar
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.piezo import Piezo
 
 AXES = ("x", "y", "z", "rx", "ry", "rz")
@@ -66,7 +66,7 @@ def direct(mechanism: Mechanism) -> Direct:
     for name, (body, place) in bodies.items():
         _add_body(result, mechanism, body, place, _velocities(names, points, name, _centre(mechanism, body, place)))
     for name, place, probe in _probes(mechanism):
-        sign = 1.0 if probe.positive is Positive.OPENS else -1.0
+        sign = 1.0 if probe.positive is SensorSense.OPENS else -1.0
         seen = [_motions(names, points, body, place)[0] for body in (probe.body, probe.base)]
         result.gauges[name] = sign * (seen[0] - seen[1])
     return result
@@ -167,8 +167,13 @@ def _copies(key, pattern):
 
 def _on_circle(pattern, angle):
     outward, around, up = np.array([np.cos(angle), np.sin(angle), 0]), np.array([-np.sin(angle), np.cos(angle), 0]), np.array([0, 0, 1])
-    x = {Facing.OUTWARD: outward, Facing.INWARD: -outward, Facing.TANGENT: around, Facing.AXIS: up}[pattern.facing]
-    z = -outward if pattern.facing is Facing.AXIS else up
+    x = {
+        InstanceOrientation.OUTWARD: outward,
+        InstanceOrientation.INWARD: -outward,
+        InstanceOrientation.TANGENT: around,
+        InstanceOrientation.AXIS: up,
+    }[pattern.facing]
+    z = -outward if pattern.facing is InstanceOrientation.AXIS else up
     c, s = np.cos(pattern.turn), np.sin(pattern.turn)
     about = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     return Place(about @ np.column_stack([x, np.cross(z, x), z]), pattern.radius * outward + pattern.height * up)

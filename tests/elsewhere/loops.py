@@ -14,7 +14,7 @@ from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
 from flexstage.control.example import integral
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.plant_models.electronics import AmplifierSettings, hardware
+from flexstage.control.plant_models.electronics import AmplifierSettings, sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.systems.closed import Loop, loop
@@ -39,7 +39,7 @@ def electric() -> Drive:
 def six_axes(modes: int = 12, gain: float = 10.0, delay: float = 80e-6, current: float = 0.1) -> Loop:
     """Integral control of all six axes, stable: the stage's modes are damped by 1 % and stay below 0 dB."""
     settings = AmplifierSettings(resistance=100.0, current=current, bits=18)
-    given = hardware(stage(), rate=RATE, delay=delay, amplifiers=settings)
+    given = sampling_chain(stage(), rate=RATE, delay=delay, amplifiers=settings)
     one = plant(lumped(stage()), ideal(stage()), given, modes=modes)
     return loop(one, integral(one, gain))
 

@@ -19,8 +19,8 @@ from flexstage.cases.registry import CASES
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Inertia, Payload
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.spatial.frame import COMPONENTS
 from tests.elsewhere.exudyn_model import System, frequencies, matrices, stroked, system
 

@@ -15,7 +15,7 @@ from flexstage.cases.registry import case
 from flexstage.cases.tip_tilt import tip_tilt
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.example import integral, integral_loop
-from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, hardware
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, sampling_chain
 from flexstage.control.plant_models.plants import plant, zero_order_hold
 from flexstage.control.robustness.disk import disk_margin
 from flexstage.control.robustness.stability_margins import margins, peaks
@@ -23,15 +23,15 @@ from flexstage.control.study.choices import SEARCHED, ControllerKind, Criterion
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, VibrationSetup
-from flexstage.control.systems.closed import Cut, Loop, loop, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, loop, open_at
 from flexstage.control.systems.curves import sensitivity
 from flexstage.control.systems.exchange import from_control, to_control
 from flexstage.control.systems.norm import peak
 from flexstage.control.systems.system import System, select
-from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.find import Asked, find
-from flexstage.control.tuning.goal import Kind
-from flexstage.control.tuning.wish import Wish
+from flexstage.control.tuning.objective import TuningObjective
+from flexstage.control.tuning.search_spec import SearchSpec
+from flexstage.control.tuning.spec import Kind
 from flexstage.control.white_noise import mean_squares
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
@@ -43,7 +43,9 @@ CLOSE, ZERO = 1e-9, 1e-12
 def _loop(rate: float | None, gain: float, case=parallelogram, modes: int = 2) -> Loop:
     stage = case()
     delay = 60e-6 if rate else 0.0
-    given = hardware(stage, rate=rate, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0), gauges=GaugeSettings(bandwidth=np.inf))
+    given = sampling_chain(
+        stage, rate=rate, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0), gauges=GaugeSettings(bandwidth=np.inf)
+    )
     one = plant(lumped(stage), ideal(stage), given, modes=modes)
     return loop(one, integral(one, gain))
 
@@ -62,7 +64,7 @@ def _like(system: System, response):
 @pytest.mark.parametrize("rate", [8e3, None])
 def test_responses(rate):
     closed = _loop(rate, 100.0, tip_tilt, 6)
-    for ours in (closed.system, open_at(closed, Cut.POSE), closed.plant.system):
+    for ours in (closed.system, open_at(closed, LoopBreak.POSE), closed.plant.system):
         theirs, at = to_control(ours), np.geomspace(0.5, 3500.0, 200)
         found = np.moveaxis(np.asarray(theirs.frequency_response(2.0 * np.pi * at).frdata), -1, 0)
         mine = ours.transfer(at)
@@ -78,11 +80,11 @@ def test_closed_by_feedback(rate, gain):
     import control
 
     closed = _loop(rate, gain, tip_tilt, 6)
-    open_loop = to_control(open_at(closed, Cut.POSE))
+    open_loop = to_control(open_at(closed, LoopBreak.POSE))
     at = np.geomspace(0.5, 3500.0, 100)
     found = control.feedback(open_loop, control.ss([], [], [], np.eye(3), open_loop.dt))
     theirs = np.moveaxis(np.asarray(found.frequency_response(2.0 * np.pi * at).frdata), -1, 0)
-    mine = np.eye(3) - sensitivity(open_at(closed, Cut.POSE)).transfer(at)
+    mine = np.eye(3) - sensitivity(open_at(closed, LoopBreak.POSE)).transfer(at)
     assert np.max(np.abs(theirs - mine)) < CLOSE * np.max(np.abs(mine))
 
 
@@ -92,8 +94,10 @@ def test_margins(gain):
     import control
 
     closed = _loop(None, gain)
-    own = margins(closed, Cut.POSE).of("x")
-    gains, phases, _, at_gain, at_phase, _ = control.stability_margins(to_control(open_at(closed, Cut.POSE)), returnall=True, method="poly")
+    own = margins(closed, LoopBreak.POSE).of("x")
+    gains, phases, _, at_gain, at_phase, _ = control.stability_margins(
+        to_control(open_at(closed, LoopBreak.POSE)), returnall=True, method="poly"
+    )
     place, least = int(np.argmin(np.where(np.asarray(gains) > 1.0, gains, np.inf))), int(np.argmin(np.abs(phases)))
     assert abs(gains[place] / own.gain_high.value - 1.0) < CLOSE
     assert abs(at_gain[place] / (2.0 * np.pi) / own.gain_high.frequency - 1.0) < CLOSE
@@ -108,7 +112,7 @@ def test_margins_of_samples(gain):
     import control
 
     closed = _loop(8e3, gain)
-    own, loops = margins(closed, Cut.POSE).of("x"), to_control(open_at(closed, Cut.POSE))
+    own, loops = margins(closed, LoopBreak.POSE).of("x"), to_control(open_at(closed, LoopBreak.POSE))
     gain_high, phase, _, at_gain, at_phase, _ = control.stability_margins(loops, method="frd")
     assert abs(gain_high / own.gain_high.value - 1.0) < 1e-7
     assert abs(np.radians(phase) - own.phase.value) < 1e-7
@@ -119,26 +123,28 @@ def test_margins_of_samples(gain):
     assert np.allclose(found * factors, -1.0, atol=CLOSE)
 
 
-def _found_by_search(plant_of_samples, wish: Wish) -> Loop:
-    tuned = find(plant_of_samples, platform_loops(plant_of_samples.coordinates), Asked(Kind.PI, wish, {}))
+def _found_by_search(plant_of_samples, spec: SearchSpec) -> Loop:
+    tuned = find(plant_of_samples, platform_loops(plant_of_samples.coordinates), Asked(Kind.PI, spec, {}))
     return loop(plant_of_samples, tuned.controller.system(plant_of_samples.hardware.step))
 
 
-@pytest.mark.parametrize("wish", [Wish(), pytest.param(Wish(objective=Aim.REJECTION, gain=0.1), marks=pytest.mark.full)])
-def test_margins_of_what_a_search_finds(wish):
+@pytest.mark.parametrize(
+    "wish", [SearchSpec(), pytest.param(SearchSpec(objective=TuningObjective.REJECTION, gain=0.1), marks=pytest.mark.full)]
+)
+def test_margins_of_what_a_search_finds(spec):
     """Gain, phase, delay and peak of S from their own responses on a dense grid, within 1e-3; and their poles at the edge of gain."""
     import control
 
-    wired = _found_by_search(integral_loop().plant, wish)
-    own, step = margins(wired, Cut.POSE).of("x"), wired.step
-    loops = to_control(open_at(wired, Cut.POSE))
+    wired = _found_by_search(integral_loop().plant, spec)
+    own, step = margins(wired, LoopBreak.POSE).of("x"), wired.step
+    loops = to_control(open_at(wired, LoopBreak.POSE))
     omega = np.geomspace(1.0, 0.9999 * np.pi / step, 3_000)
     theirs = control.FRD(loops(np.exp(1j * omega * step)), omega, smooth=True)
     gain, phase, least, _, crossing, _ = control.stability_margins(theirs)
     assert gain == pytest.approx(own.gain_high.value, rel=1e-3)
     assert np.radians(phase) == pytest.approx(own.phase.value, rel=1e-3)
     assert np.radians(phase) / crossing == pytest.approx(own.delay.value, rel=1e-3)
-    assert 1.0 / least == pytest.approx(peaks(wired, Cut.POSE).sensitivity.value, rel=1e-3)
+    assert 1.0 / least == pytest.approx(peaks(wired, LoopBreak.POSE).sensitivity.value, rel=1e-3)
     inside, beyond = (np.max(np.abs(control.feedback(factor * own.gain_high.value * loops, 1).poles())) for factor in (0.999, 1.001))
     assert inside < 1.0 < beyond
 
@@ -161,7 +167,7 @@ def test_margins_of_stages_by_search(name, kind):
     Its own `stability_margins` ends in a bracket without a change of sign on the steering mirror.
     """
     wired = _stage_by_search(name, kind)
-    found, opened = margins(wired, Cut.POSE), to_control(open_at(wired, Cut.POSE))
+    found, opened = margins(wired, LoopBreak.POSE), to_control(open_at(wired, LoopBreak.POSE))
     edges = [edge.frequency for each in found.channels for edge in (each.gain_high, each.gain_low, each.phase, each.delay)]
     lines = np.geomspace(0.1, 0.4999 / wired.step, 12_000)
     every = np.unique(np.concatenate([lines, *(edge * np.linspace(0.999, 1.001, 41) for edge in edges if np.isfinite(edge))]))
@@ -204,9 +210,9 @@ def test_disk_margins(rate):
 
     closed = _loop(rate, 200.0)
     for skew in (-0.5, 0.0, 1.0):
-        own = disk_margin(sensitivity(open_at(closed, Cut.POSE)), skew)
+        own = disk_margin(sensitivity(open_at(closed, LoopBreak.POSE)), skew)
         at = 2.0 * np.pi * np.unique(np.append(np.geomspace(1.0, 3900.0, 300), own.frequency))
-        alpha, _, _ = control.disk_margins(to_control(open_at(closed, Cut.POSE)), at, skew)
+        alpha, _, _ = control.disk_margins(to_control(open_at(closed, LoopBreak.POSE)), at, skew)
         assert abs(alpha / own.value - 1.0) < CLOSE
 
 
@@ -236,7 +242,12 @@ def test_hold():
 
     stage = parallelogram()
     plants = [
-        plant(lumped(stage), ideal(stage), hardware(stage, rate=8e3, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0)), modes=2)
+        plant(
+            lumped(stage),
+            ideal(stage),
+            sampling_chain(stage, rate=8e3, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0)),
+            modes=2,
+        )
         for delay in (0.0, 1.0 / 8e3)
     ]
     ours = [select(zero_order_hold(each), ["B"], ["gap.S"]) for each in plants]

@@ -181,8 +181,8 @@ def test_the_surface_has_choices_names_and_numbers() -> None:
 
 # --- names of what is not there ---
 
-FREE = {"where", "source", "about", "text", "states", "mount.name", "reach.point"}
-"""Parameters that take any text, or are refused on other stages: `reach` is for forces."""
+FREE = {"where", "source", "about", "text", "states", "mount.name", "force_workspace.point"}
+"""Parameters that take any text, or are refused on other stages: `force_workspace` is for forces."""
 
 
 @functools.cache
@@ -196,7 +196,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     Kinematics: lambda: fs.ideal(stage()),
     Nonlinear: lambda: fs.nonlinear(stage()),
     State: lambda: fs.equilibrium(made(Nonlinear)),
-    Hardware: lambda: fs.control.hardware(stage(), rate=1e4),
+    Hardware: lambda: fs.control.sampling_chain(stage(), rate=1e4),
     Plant: lambda: fs.control.plant(made(fs.LinearModel), made(Kinematics), made(Hardware)),
     fs.experiment.RigSetup: lambda: fs.experiment.RigSetup(seconds=10.0),
     fs.control.System: lambda: fs.control.System(np.eye(1), np.eye(1), np.eye(1), np.eye(1), (Channel("u", "V"),), (Channel("y", "m"),)),
@@ -273,4 +273,4 @@ def test_names_are_tested() -> None:
 def test_a_point_of_nothing_is_refused_where_forces_drive_the_stage() -> None:
     driven = fs.case("voice-coil-xy")
     with pytest.raises(fs.DesignError, match="nonsense"):
-        fs.reach(driven, fs.ideal(driven), fs.lumped(driven), point="nonsense")
+        fs.force_workspace(driven, fs.ideal(driven), fs.lumped(driven), point="nonsense")

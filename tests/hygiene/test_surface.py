@@ -5,10 +5,12 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import itertools
 import pkgutil
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,6 +23,16 @@ HEAVY = {"numpy", "scipy", "pydantic", "pint", "matplotlib", "pandas", "xarray"}
 SOLVER = {"ngsolve", "netgen", "pyngcore", "ngsolve_openblas", "meshio", "pygltflib"}
 """What only the solid model needs: neither loaded nor required by anything else."""
 
+DEFINED_TWICE = """
+Amount Amplifier Asked Axes Axis Band Bearing Bench Bend Block Blocks Bounds Buckling Change Channel Code Column Combination Command
+Comparison Compensation Contribution Course Curve Curves Doubt Draft Drive Elimination Ends Engine Evidence Fact Family Field Fit Fitted
+Followed Found Free Grid Group Hardware Hold Inertia Job Jobs Joint Judgement Kind Law Layout Leg Limits Line Lines Margins Matrix
+Measured Modes Motion Motions Notch Numbers Outcome Pairs Part Peak Peaks Piece Place Plan Plate Point Pose Problem Reach Reading
+Resolution Response Rest Row Rows Rule Run Scene Section Session Shape Shares Side SideBySide Simulated Slopes Slot Solid Solution
+Spectrum Spot Stacks Stage Start State Status Step Stream Stretch Stroke Superelement Surface Sweep System Table Tables Task Told Values
+Variable Variant Verdict View Weights Writer
+"""
+"""Public classes that several modules define, each under this name: the list only shrinks."""
 
 NAMESPACES = {"": flexstage} | {f".{wing}": getattr(flexstage, wing) for wing in flexstage.WINGS}
 
@@ -64,6 +76,12 @@ def test_no_name_has_two_homes_nor_that_of_a_module() -> None:
 @pytest.mark.parametrize(("package", "name"), EVERY)
 def test_every_name_is_the_one_of_its_home(package: str, name: str) -> None:
     assert getattr(NAMESPACES[package], name) is getattr(importlib.import_module(table(package)[name]), name)
+
+
+def test_a_public_class_name_is_defined_once() -> None:
+    nodes = itertools.chain.from_iterable(ast.walk(ast.parse(file.read_text(encoding="utf-8"))) for file in PACKAGE.rglob("*.py"))
+    counts = Counter(node.name for node in nodes if isinstance(node, ast.ClassDef) and not node.name.startswith("_"))
+    assert {name for name, count in counts.items() if count > 1} == set(DEFINED_TWICE.split())
 
 
 @pytest.mark.parametrize("package", NAMESPACES)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexstage.mechanism.store import loads
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.file import loads_study
 
 STEEL = """
@@ -87,10 +87,10 @@ def study_of(folder, design, text):
     loads(design)
     (folder / "stage.toml").write_text(design)
     study = loads_study(f'format = "flexstage study 1"\ndesign = "stage.toml"\n{text}', folder=folder)
-    return study, load_wanted(study)
+    return study, load_optimisation(study)
 
 
 def case_of(case, text):
     """A study of a shipped case, and what is wanted."""
     study = loads_study(f'format = "flexstage study 1"\ncase = "{case}"\n{text}')
-    return study, load_wanted(study)
+    return study, load_optimisation(study)

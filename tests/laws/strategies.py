@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 
 from flexstage.base.number import stack
 from flexstage.base.units.scale import X, Y, Z, mm
-from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar, Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.parts.body import Body, Inertia
-from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.given import Given
+from flexstage.parts.compliance_matrix import ComplianceMatrix
+from flexstage.parts.gauge import Gauge, SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import tensor
 from flexstage.parts.material import Material
@@ -106,7 +106,7 @@ def givens(draw):
     lower = np.eye(6) + np.tril(np.array([[draw(_STEPS) for _ in range(6)] for _ in range(6)]) / 9.0, -1)
     matrix = root[:, None] * (lower @ lower.T) * root
     freedoms = draw(_of_any_kind).intended
-    return Given(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), freedoms, draw(_number(0.0, 0.05)))
+    return ComplianceMatrix(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), freedoms, draw(_number(0.0, 0.05)))
 
 
 piezos = st.builds(
@@ -122,7 +122,7 @@ passive_parts = st.one_of(notches, necks, leaves, rods, givens())
 
 
 _signs = st.sampled_from((0.0, 1.0, -1.0))
-_sides = st.sampled_from(Positive)
+_sides = st.sampled_from(SensorSense)
 
 
 @cache
@@ -317,7 +317,7 @@ def rosettes(draw):
         for number, (at, orientation, _) in enumerate(joints)
     }
     links["pzt"] = Link(("foot", PLATFORM), "stack", draw(places), *draw(orientations()))
-    around = Polar(draw(_length(20, 100)), draw(_number(-3.0, 3.0)), draw(st.sampled_from(Facing)), draw(_length(-30, 30)))
+    around = Polar(draw(_length(20, 100)), draw(_number(-3.0, 3.0)), draw(st.sampled_from(InstanceOrientation)), draw(_length(-30, 30)))
     inertia = Inertia(0.01, 0.01, 0.02)
     return Mechanism(
         name="random rosette",

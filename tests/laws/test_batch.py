@@ -32,7 +32,7 @@ from flexstage.models.batch.parameters.numbers import Family, Slopes, drawn_fami
 from flexstage.models.batch.parameters.units import _told
 from flexstage.models.batch.solution import Stage, by_iteration, wholly
 from flexstage.parts.body import Body, Inertia
-from flexstage.parts.given import Given
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from tests.conftest import examples
 from tests.laws.shared import lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, rosettes
@@ -458,7 +458,7 @@ def ring(massless: bool) -> Mechanism:
         f"l{number}": Link(pair, "joint", (0.02 * number - 0.1, 0.05, 0.01 * number), directions[number % 3])
         for number, pair in enumerate(pairs)
     }
-    return Mechanism("ring", parts={"joint": Given(soft, free=(), mass=0.0 if massless else 0.001)}, bodies=bodies, links=links)
+    return Mechanism("ring", parts={"joint": ComplianceMatrix(soft, free=(), mass=0.0 if massless else 0.001)}, bodies=bodies, links=links)
 
 
 @pytest.mark.parametrize("massless", [False, True])
@@ -606,7 +606,7 @@ def test_legs_are_equal_wherever_on_the_platform_they_end() -> None:
 
 def test_links_at_the_points_of_their_bodies_have_no_arms() -> None:
     """Nothing is divided by the longest arm where it is nought."""
-    parts = {"spring": Given(tuple(map(tuple, np.diag([1e-6, 1e-6, 1e-6, 1e-3, 1e-3, 1e-3]).tolist())), free=(), mass=0.0)}
+    parts = {"spring": ComplianceMatrix(tuple(map(tuple, np.diag([1e-6, 1e-6, 1e-6, 1e-3, 1e-3, 1e-3]).tolist())), free=(), mass=0.0)}
     body = Body(mass=1.0, centre=(0.0, 0.0, 0.0), inertia=Inertia(xx=1e-3, yy=1e-3, zz=1e-3))
     stage = Mechanism("point", parts=parts, bodies={PLATFORM: body}, links={"one": Link((GROUND, PLATFORM), "spring", (0.0, 0.0, 0.0), X)})
     found = platform_modes(plan(stage, ()), np.zeros((1, 0)))

@@ -13,8 +13,8 @@ from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance, law, stiffness
 from flexstage.beams.mass import mass
 from flexstage.beams.stress import stress
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.freedom import ALL, Freedom
-from flexstage.parts.given import Given, Joint
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -75,7 +75,7 @@ def given_parts(draw):
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     factor = random.normal(size=(6, 12))
     matrix = factor @ factor.T / 12.0 + 0.1 * np.eye(6)
-    return Given(tuple(map(tuple, matrix.tolist())), free=(), mass=draw(sizes))
+    return ComplianceMatrix(tuple(map(tuple, matrix.tolist())), free=(), mass=draw(sizes))
 
 
 parts = beams | given_parts()

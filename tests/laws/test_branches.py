@@ -10,8 +10,8 @@ import pytest
 from flexstage.base.finding import LowerBoundError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.models.nonlinear.equilibrium import equilibrium
-from flexstage.models.nonlinear.paths.critical import Kind, critical, unstable_motions
-from flexstage.models.nonlinear.paths.path import beyond, trace
+from flexstage.models.nonlinear.paths.critical_load import Kind, critical_load, unstable_motions
+from flexstage.models.nonlinear.paths.load_path import beyond, continuation
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from tests.laws.test_nonlinear import LEAF, UNIT, guide
 
@@ -30,7 +30,7 @@ def random_guide(seed: int) -> tuple[Nonlinear, dict[str, float]]:
 @pytest.mark.parametrize("seed", [0, *(pytest.param(each, marks=pytest.mark.full) for each in range(1, 40))])
 def test_branches_are_equilibria_and_mirror_images(seed: int):
     model, load = random_guide(seed)
-    found = critical(model, load, weight=0.0)
+    found = critical_load(model, load, weight=0.0)
     assert found.kind is Kind.BIFURCATION
     both = [beyond(found, load, side=side, step=STEP, points=3) for side in (1.0, -1.0)]
     for one in both:
@@ -48,7 +48,7 @@ def test_branches_are_equilibria_and_mirror_images(seed: int):
 def test_a_limit_is_not_told_as_a_branch():
     """A leaf buckles between its ends, where bodies nearly rest, and takes the platform along: equilibrium goes on by less load."""
     model, load = nonlinear(parallelogram()), {"platform.fy": 1e3}
-    found = critical(model, load, weight=0.0, tolerance=1e-4)
+    found = critical_load(model, load, weight=0.0, tolerance=1e-4)
     assert found.kind is Kind.LIMIT
     after = beyond(found, load, step=1e-4, points=3)
     assert (np.diff(after.values) < 0.0).all()
@@ -63,9 +63,9 @@ def test_an_imperfect_bifurcation_is_no_critical_load():
     """
     model, load = nonlinear(parallelogram()), {"platform.fx": -1e3}
     with pytest.raises(LowerBoundError, match="strained by 5% there") as error:
-        critical(model, load)
+        critical_load(model, load)
     assert error.value.bound == pytest.approx(11.063, rel=5e-3)
-    after = trace(model, load, step=0.02, points=2)
+    after = continuation(model, load, step=0.02, points=2)
     assert (np.diff(after.values) > 0.0).all()
     assert not after.motions.any()
     assert not after.events

@@ -17,10 +17,10 @@ from flexstage.models.nonlinear.elements.condense import system
 from flexstage.models.nonlinear.elements.hold import nothing
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.graph import System, advance, assemble
-from flexstage.models.nonlinear.paths.critical import Kind, critical, unstable_motions
-from flexstage.models.nonlinear.paths.path import trace
+from flexstage.models.nonlinear.paths.critical_load import Kind, critical_load, unstable_motions
+from flexstage.models.nonlinear.paths.load_path import continuation
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads
+from flexstage.models.nonlinear.state import Loads, SolverOptions
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
@@ -112,7 +112,7 @@ def factors(model: Nonlinear, sizes: np.ndarray) -> list[float]:
     found: list[float] = []
     for size in sizes:
         try:
-            found.append(critical(model, {DOWN: -float(size)}, weight=0.0).factor * -float(size))
+            found.append(critical_load(model, {DOWN: -float(size)}, weight=0.0).factor * -float(size))
         except LowerBoundError:
             found.append(np.nan)
     return found
@@ -170,21 +170,21 @@ def test_no_equilibrium_beyond_a_snap_is_taken_for_the_deflection_under_a_load()
     """A dome bears 0.95 of its limit load; beyond it the equilibrium of the dome that has snapped through is refused."""
     stage = random_legs(2)
     (limit,) = factors(nonlinear(stage), np.array([1.0]))
-    assert fs.stance(stage, loads={DOWN: 0.95 * limit}).sag.at("platform", "z") < 0.0
-    beyond = equilibrium(nonlinear(stage), {DOWN: 1.5 * limit}, effort=Effort(past=True))
+    assert fs.operating_point(stage, loads={DOWN: 0.95 * limit}).sag.at("platform", "z") < 0.0
+    beyond = equilibrium(nonlinear(stage), {DOWN: 1.5 * limit}, options=SolverOptions(past=True))
     assert beyond.converged
     assert not unstable_motions(beyond)
     refused = fs.equilibrium(fs.nonlinear(stage), {DOWN: np.array([0.95, 1.5]) * limit})
     assert refused.converged.tolist() == [True, False]
     assert "at 0.66" in refused.reasons[1]
     with pytest.raises(fs.DesignError, match=r"at 0\.66\d* of its loads it snaps or buckles"):
-        fs.stance(stage, loads={DOWN: 1.5 * limit})
+        fs.operating_point(stage, loads={DOWN: 1.5 * limit})
 
 
 def test_a_trace_with_long_steps_has_the_events_of_one_with_short_steps():
     """A dome through its snap: a limit point, and another one where it takes load again; nothing else."""
     model, load = nonlinear(random_legs(2)), {DOWN: -1.0}
-    long, short = (trace(model, load, step=step, points=count) for step, count in ((0.05, 4), (0.005, 40)))
+    long, short = (continuation(model, load, step=step, points=count) for step, count in ((0.05, 4), (0.005, 40)))
     assert [each.kind for each in long.events] == [Kind.LIMIT, Kind.LIMIT]
     assert [each.value for each in long.events] == pytest.approx([each.value for each in short.events], rel=5e-3)
     assert not long.motions[[0, -1]].any()
@@ -219,5 +219,5 @@ def test_a_load_is_bounded_where_the_6x6_of_a_link_ends(load: str, end: float):
     spring = fs.Spring(diagonal=(1e4, 1e4, 1e4, 50.0, 50.0, 50.0))
     held = replace(cantilever(), parts={"rod": spring})
     with pytest.raises(LowerBoundError, match="rod is deformed beyond what its 6x6 holds for") as error:
-        critical(nonlinear(held), {load: 1.0}, weight=0.0)
+        critical_load(nonlinear(held), {load: 1.0}, weight=0.0)
     assert error.value.bound == pytest.approx(end, rel=1e-4)

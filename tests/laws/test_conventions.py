@@ -93,7 +93,7 @@ def test_positive_stroke_expands_and_pushes_the_platform_along_facing(model: fs.
 def test_gauge_grows_as_the_gap_opens(stage: fs.Mechanism) -> None:
     opens = fs.ideal(stage).gauge_mapping
     assert opens.at("S4", "z") == pytest.approx(1.0)
-    closing = {name: replace(probe, positive=fs.Positive.CLOSES) for name, probe in stage.gauges.items()}
+    closing = {name: replace(probe, positive=fs.SensorSense.CLOSES) for name, probe in stage.gauges.items()}
     np.testing.assert_allclose(fs.ideal(replace(stage, gauges=closing)).gauge_mapping.values, -opens.values)
 
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.loaded.load_cases import REST, LoadCase, critical_factors
+from flexstage.analysis.loaded.load_cases import REST, LoadCase, buckling_factors
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.lines import centre_lines, critical_motion, mode_motions
-from flexstage.models.nonlinear.paths.path import Path
+from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.show.displaced import along_table, buckling_report, stroke_report
 from flexstage.show.table import matrix_table
-from flexstage.show.viewer.course import NODES, stroke_data
+from flexstage.show.viewer.animation import NODES, stroke_data
 from flexstage.spatial.rotation import exponential, logarithm
 
 STAGE = fs.case("parallelogram")
@@ -27,13 +27,13 @@ def model() -> Nonlinear:
 
 
 @pytest.fixture(scope="module")
-def course(model: Nonlinear) -> Path:
-    return fs.path(model, "platform.x", np.linspace(-1e-4, 5e-4, 4))
+def course(model: Nonlinear) -> LoadPath:
+    return fs.load_path(model, "platform.x", np.linspace(-1e-4, 5e-4, 4))
 
 
-def test_what_is_lost_over_a_short_stroke_is_lost_motion(model: Nonlinear, course: Path) -> None:
+def test_what_is_lost_over_a_short_stroke_is_lost_motion(model: Nonlinear, course: LoadPath) -> None:
     """And nothing is told where there is no stroke, or where no stack drives."""
-    found = fs.stroke(fs.path(model, "B", np.array([0.0, 1e-9]), weight=0.0), kinematics=fs.ideal(STAGE))
+    found = fs.stroke(fs.load_path(model, "B", np.array([0.0, 1e-9]), weight=0.0), kinematics=fs.ideal(STAGE))
     lost = found.along.values[:, found.along.columns.index("lost")]
     assert np.isnan(lost[0])
     assert lost[1] == pytest.approx(
@@ -43,7 +43,7 @@ def test_what_is_lost_over_a_short_stroke_is_lost_motion(model: Nonlinear, cours
 
 
 @pytest.mark.parametrize("name", ["left", "B/front"])
-def test_centre_lines_are_those_of_the_flexures(model: Nonlinear, course: Path, name: str) -> None:
+def test_centre_lines_are_those_of_the_flexures(model: Nonlinear, course: LoadPath, name: str) -> None:
     """They begin and end on their bodies without a gap, and their slope is that of the sections but for shear and stretch."""
     line = centre_lines(course.state)[name]
     drawn = model.assembly.links[name].frame
@@ -74,7 +74,7 @@ def test_small_motions_are_differences_of_states(model: Nonlinear) -> None:
         np.testing.assert_allclose(moved[0, :, 3:], turn, rtol=0.0, atol=1e-4 * np.max(size[3:]))
 
 
-def test_poses_do_not_gape(course: Path) -> None:
+def test_poses_do_not_gape(course: LoadPath) -> None:
     """The first and the last node of all that bends move with their bodies, at every frame, and nodes of nothing else are told."""
     data = stroke_data(STAGE, course, fs.stroke(course))
     path = data.motions[0]
@@ -96,7 +96,7 @@ def test_poses_do_not_gape(course: Path) -> None:
 @pytest.mark.full
 def test_what_gives_way_bends_as_the_flexures_follow(model: Nonlinear) -> None:
     """The ends of centre lines move with the shape's bodies."""
-    found = fs.critical(model, {"platform.fy": 10e3}, tolerance=1e-3)
+    found = fs.critical_load(model, {"platform.fy": 10e3}, tolerance=1e-3)
     moved = critical_motion(found)
     np.testing.assert_allclose(moved.bodies[0], found.shape)
     number = found.bodies.index("platform")
@@ -104,11 +104,11 @@ def test_what_gives_way_bends_as_the_flexures_follow(model: Nonlinear) -> None:
     twist = found.shape[number]
     end = moved.lines["left"][0, -1]
     np.testing.assert_allclose(end, [*(twist[:3] + np.cross(twist[3:], arm)), *twist[3:]], atol=1e-12 * np.max(np.abs(twist)))
-    whole = critical_factors(STAGE, [LoadCase("platform.fy=10 kN", REST, {"platform.fy": 10e3})])
+    whole = buckling_factors(STAGE, [LoadCase("platform.fy=10 kN", REST, {"platform.fy": 10e3})])
     assert len(buckling_report(STAGE, whole)) < 2e6
 
 
-def test_reports_are_small_and_the_same_again(course: Path) -> None:
+def test_reports_are_small_and_the_same_again(course: LoadPath) -> None:
     """A report of a stroke stands alone in less than 2 MB, names what is beyond a limit, and has the same bytes again."""
     found = fs.stroke(course)
     told = stroke_report(STAGE, course, found)
@@ -117,7 +117,7 @@ def test_reports_are_small_and_the_same_again(course: Path) -> None:
     assert "MPa of " in told
 
 
-def test_points_stand_in_columns_of_one_unit(course: Path) -> None:
+def test_points_stand_in_columns_of_one_unit(course: LoadPath) -> None:
     """Numbers of the table are those of the course in the units above them; what is not known has no unit."""
     found = fs.stroke(course)
     gone = replace(found.along, values=np.where(np.arange(len(found.along.rows))[:, None] == 1, np.nan, found.along.values))

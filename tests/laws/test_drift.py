@@ -17,7 +17,7 @@ from flexstage.base.number import Table
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.parts.given import Given, Joint
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.spatial.frame import COMPONENTS
 from tests.conftest import examples
 from tests.laws.shared import ideal, lumped
@@ -175,7 +175,7 @@ def test_gauges_held_still():
 def test_given_parts_and_joints_take_part():
     """A stage on a given 6x6 and an ideal joint: of one material it scales all the same, the locked joint included."""
     steel = fs.Material(young=200e9, poisson=0.3, density=7750.0, expansion=10e-6)
-    spring = Given(tuple(tuple(1e-6 if row == column else 0.0 for column in range(6)) for row in range(6)), (fs.Freedom.X,))
+    spring = ComplianceMatrix(tuple(tuple(1e-6 if row == column else 0.0 for column in range(6)) for row in range(6)), (fs.Freedom.X,))
     grain = {"grain": fs.Block("steel", (1e-3, 1e-3, 1e-3), (0.02, 0.01, 0.0))}
     stage = fs.Mechanism(
         name="joints",

@@ -11,7 +11,7 @@ import flexstage as fs
 from flexstage.base.units.scale import X, Z, mm
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.plant_models.coordinates import coordinates
-from flexstage.control.plant_models.electronics import AmplifierSettings, hardware
+from flexstage.control.plant_models.electronics import AmplifierSettings, sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import driven_machine
@@ -82,7 +82,7 @@ def test_coils_in_one_line_share_the_force_by_their_constants():
 def test_the_plant_of_a_coil_is_a_driven_mass_behind_the_lags(single):
     """k_f / (k - m w^2 + j w c), amplifier and gauge of first order."""
     model = lumped(single)
-    found = plant(model, ideal(single), hardware(single, amplifiers=AmplifierSettings(bandwidth=5e3)))
+    found = plant(model, ideal(single), sampling_chain(single, amplifiers=AmplifierSettings(bandwidth=5e3)))
     lines = np.array([1.0, 10.0, 60.0, 300.0])
     seen = found.system.transfer(lines)[:, found.system.output_names.index("gap.S"), found.system.input_names.index("motor")]
     stiffness = 1.0 / static_gain(model, ("platform.x",), ("platform.fx",)).values.item()
@@ -113,12 +113,12 @@ def test_the_exported_controller_gives_amperes(study):
 
 def test_a_current_amplifier_clips_at_the_peak_and_rises_by_the_volts_that_are_left(single):
     """Clipped by peak current and V/R, not by heat; (V - R i/2)/L in the mean; one step of 2^bits over both ways."""
-    found = hardware(single, amplifiers=AmplifierSettings(bits=12, current_noise=3e-6)).amplifiers["motor"]
+    found = sampling_chain(single, amplifiers=AmplifierSettings(bits=12, current_noise=3e-6)).amplifiers["motor"]
     assert (found.low, found.high, found.noise_density) == (-5.0, 5.0, 3e-6)
     assert found.slew == pytest.approx((24.0 - 0.5 * 3.0 * 5.0) / 1.5e-3)
     assert found.step == pytest.approx(10.0 / 2**12)
     slow = stage(motor=replace(COIL, drive=Supply.VOLTAGE, resistance=6.0))
-    voltage = hardware(slow).amplifiers["motor"]
+    voltage = sampling_chain(slow).amplifiers["motor"]
     assert (voltage.high, voltage.bandwidth) == (pytest.approx(4.0), pytest.approx(6.0 / (2.0 * np.pi * 1.5e-3)))
     assert [limit.name for limit in COIL.limits if isinstance(limit, ForceLimit) and not limit.clips] == ["continuous current"]
 

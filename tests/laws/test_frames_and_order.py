@@ -118,5 +118,5 @@ def test_results_by_name_do_not_depend_on_the_order_of_entries(name: str) -> Non
 
 
 PARTS = (("statics", "compliance"), ("deflection", "by_cause"), ("drift", "motion"), ("drift", "gauges"), ("lost_motion", "gain"),
-         ("lost_motion", "loss"), ("reach", "per_motion"), ("reach", "bounds"))  # fmt: skip
+         ("lost_motion", "loss"), ("force_workspace", "per_motion"), ("force_workspace", "bounds"))  # fmt: skip
 """Results with names on both axes."""

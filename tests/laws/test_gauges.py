@@ -13,7 +13,7 @@ import flexstage as fs
 from flexstage.analysis.workspace.gauging import gauge_inverse, pose_resolution
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.plant_models.coordinates import coordinates
-from flexstage.control.plant_models.electronics import hardware
+from flexstage.control.plant_models.electronics import sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.experiment.virtual_rig.plan import plan_test
 from flexstage.experiment.virtual_rig.setup import RigSetup, Sensing
@@ -24,7 +24,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.parts.encoder import Encoder
-from flexstage.parts.gauge import Gauge, Positive, combine_gauges
+from flexstage.parts.gauge import Gauge, SensorSense, combine_gauges
 from flexstage.parts.strain_gauge import StrainGauge
 from flexstage.parts.tilt import Tilt
 from flexstage.spatial.frame import axes
@@ -51,7 +51,7 @@ def rows(model, *names):
 
 
 def read(gauge, body, base, at, along, up):
-    return Probe(gauge, body, Pose(at, along, up), Positive.OPENS if gauge == "gap" else None, base)
+    return Probe(gauge, body, Pose(at, along, up), SensorSense.OPENS if gauge == "gap" else None, base)
 
 
 @examples(15, 400)
@@ -201,7 +201,7 @@ def test_readings_keep_their_units_in_responses_tests_and_loops(stage):
     assert (test.gauges, test.units) == (("T", "G1", "G2", "G3", "G4", "G5", "G6", "E"), ("rad", *("m",) * 7))
     assert (test.densities[0], test.steps[0], test.walks[0]) == (1e-10, 5e-9, 0.0)
     assert set(test.densities[1:]) == {1e-9}
-    loop = plant(model, ideal(whole), hardware(whole, rate=10e3))
+    loop = plant(model, ideal(whole), sampling_chain(whole, rate=10e3))
     assert loop.gauges == test.gauges
     assert [channel.unit for channel in loop.system.outputs if channel.name.startswith("gap.")] == ["rad", *("m",) * 7]
 
@@ -210,7 +210,7 @@ def test_readings_keep_their_units_in_responses_tests_and_loops(stage):
     ("gauges", "found"),
     [
         ({"G": Probe("gap", PLATFORM, Pose())}, "gauges.G: it has no positive"),
-        ({"T": Probe("tilt", PLATFORM, Pose(), Positive.OPENS)}, "gauges.T.positive: tilt reads along or about the gauge's own x axis"),
+        ({"T": Probe("tilt", PLATFORM, Pose(), SensorSense.OPENS)}, "gauges.T.positive: tilt reads along or about the gauge's own x axis"),
         ({"G": Probe("strain", PLATFORM, Pose())}, "gauges.G: strain is a gauge on a link"),
         ({"G": LinkProbe("strain", "B7/pzt")}, 'gauges.G.link: there is no link "B7/pzt". Near to it'),
         ({"G1-G2": LinkProbe("strain", "B1-B3/pzt")}, 'gauges.G1-G2.link: "B1-B3/pzt" names 3 links, and G1-G2 2 gauges'),

@@ -17,7 +17,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Inertia
-from flexstage.parts.given import Given
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.mass import tensor
 from flexstage.spatial.frame import rigid_inertia
 
@@ -28,14 +28,14 @@ numbers = st.floats(0.1, 2.0)
 @given(numbers, st.tuples(*[st.floats(-0.1, 0.1)] * 3), st.floats(-0.1, 0.1))
 def test_a_rigid_motion_has_the_inertia_of_the_solid(weight, centre, product):
     inertia = Inertia(1.0, 1.1, 1.2, xy=product, yz=-0.5 * product)
-    matrix = mass(Given(UNIT, free=(), mass=weight, centre=centre, inertia=inertia), None)
+    matrix = mass(ComplianceMatrix(UNIT, free=(), mass=weight, centre=centre, inertia=inertia), None)
     whole = sum(matrix[rows, columns] for rows in (slice(6), slice(6, 12)) for columns in (slice(6), slice(6, 12)))
     np.testing.assert_allclose(whole, rigid_inertia(weight, tensor(inertia), np.array(centre), np.zeros(3)), rtol=1e-12, atol=1e-15)
     assert np.min(np.linalg.eigvalsh(matrix)) > 0.0
 
 
 def test_without_inertia_nothing_changes_and_with_it_files_hold_it():
-    plain = Given(UNIT, free=(), mass=2.0)
+    plain = ComplianceMatrix(UNIT, free=(), mass=2.0)
     np.testing.assert_array_equal(np.diag(mass(plain, None)), [1, 1, 1, 0, 0, 0] * 2)
     solid = replace(plain, centre=(0.01, 0.02, 0.0), inertia=Inertia(1e-3, 1e-3, 1e-3))
     stage = parallelogram()

@@ -25,8 +25,8 @@ from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.port import ports
 from flexstage.models.linear.state_space import state_space
 from flexstage.models.linear.static import static_gain
-from flexstage.parts.gauge import Positive
-from flexstage.parts.given import Given, Joint
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from tests.conftest import examples
@@ -47,7 +47,7 @@ def softened(mechanism, stiffness):
     """Ideal joints with a little stiffness where they are free."""
     compliance = tuple(tuple(1.0 / stiffness if row == column else 0.0 for column in range(6)) for row in range(6))
     parts = {
-        name: Restricted(Given(compliance, part.free), part.free) if isinstance(part, Joint) else part
+        name: Restricted(ComplianceMatrix(compliance, part.free), part.free) if isinstance(part, Joint) else part
         for name, part in mechanism.parts.items()
     }
     return replace(mechanism, parts=parts)
@@ -126,7 +126,7 @@ def with_probes(mechanism, where):
 
 
 def _probe(body, where):
-    return Probe("gauge", body, Pose(where, (0.6, 0.0, 0.8), (0.0, 1.0, 0.0)), Positive.OPENS)
+    return Probe("gauge", body, Pose(where, (0.6, 0.0, 0.8), (0.0, 1.0, 0.0)), SensorSense.OPENS)
 
 
 @examples(18, 600)

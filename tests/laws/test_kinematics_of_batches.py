@@ -23,9 +23,9 @@ from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.elimination import eliminate, eliminate_each
 from flexstage.models.mapped import borne_compliance
 from flexstage.parts.body import Body, Inertia
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.freedom import ALL, Freedom
-from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.given import Given, Joint
+from flexstage.parts.gauge import Gauge, SensorSense
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.studies.sweeps.definition import Study
@@ -118,10 +118,10 @@ AXIAL = tuple(freedom for freedom in ALL if freedom is not Freedom.X)
 PLATE = Body(mass=1.0, centre=(0.01, 0.02, 0.03), inertia=Inertia(1e-3, 2e-3, 3e-3))
 
 
-def spring(stiffness: float, free: tuple[Freedom, ...] = ALL) -> Given:
+def spring(stiffness: float, free: tuple[Freedom, ...] = ALL) -> ComplianceMatrix:
     """As stiff along all axes, and about them over 0.03 m."""
     compliance = np.diag([1.0 / stiffness] * 3 + [1e3 / stiffness] * 3)
-    return Given(tuple(map(tuple, compliance.tolist())), free)
+    return ComplianceMatrix(tuple(map(tuple, compliance.tolist())), free)
 
 
 def on_rods(apart: Numbers, turn: Numbers) -> Mechanism:
@@ -146,7 +146,7 @@ def spinning(beside: Numbers, centre: Numbers, gauge: Numbers) -> Mechanism:
             "side": Link(("ground", "rod"), "side", (0.03, beside, 0.0), X),
         },
         sensors={"gauge": Gauge(range=1e-4)},
-        gauges={"S": Probe("gauge", "rod", Pose((0.05, gauge, 0.0), Z, X), Positive.OPENS)},
+        gauges={"S": Probe("gauge", "rod", Pose((0.05, gauge, 0.0), Z, X), SensorSense.OPENS)},
     )
 
 

@@ -10,9 +10,9 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.complete import analyse
-from flexstage.analysis.loaded.load_cases import REST, LoadCase, case_critical, critical_factors, load_cases
+from flexstage.analysis.loaded.load_cases import REST, LoadCase, buckling_factors, case_critical, load_cases
 from flexstage.base.finding import LowerBoundError
-from flexstage.models.nonlinear.paths.critical import STATED, WEIGHT
+from flexstage.models.nonlinear.paths.critical_load import STATED, WEIGHT
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.show.tables.overview import closing_text
 
@@ -91,7 +91,7 @@ def test_a_requirement_that_a_path_meets_is_met_and_what_is_demanded_beyond_is_w
     """The same end, asked for less than it bears, and for more than it does; of a column always, below."""
     (met,) = judge(replace(OUT, requirements={"out.buckling at 0 mm": "at least 2"}))
     assert met.passed
-    told = critical_factors(OUT, [load_cases(OUT)[1]], most=3.0, demand=3.0).cautions
+    told = buckling_factors(OUT, [load_cases(OUT)[1]], most=3.0, demand=3.0).warnings
     assert [each.where for each in told] == ["platform.x = 0 mm"]
     assert "stable up to 2.4" in told[0].what
 
@@ -109,8 +109,8 @@ def test_the_verdict_of_an_analysis_warns_of_ends_that_bear_too_little() -> None
 def test_what_hangs_bears_any_weight() -> None:
     """Nothing gives way: the factor is infinite, requirements on it are met, and nothing is warned of."""
     hangs = replace(STAGE, gravity=(0.0, 0.0, -1e-9), paths={}, requirements={"buckling.factor": "at least 3"})
-    assert np.isinf(critical_factors(hangs, load_cases(hangs)[:1], most=100.0).cases[0].factor)
-    assert not critical_factors(hangs, load_cases(hangs)[:1], most=100.0).cautions
+    assert np.isinf(buckling_factors(hangs, load_cases(hangs)[:1], most=100.0).cases[0].factor)
+    assert not buckling_factors(hangs, load_cases(hangs)[:1], most=100.0).warnings
 
 
 def test_a_preload_is_a_load_that_grows() -> None:
@@ -127,8 +127,8 @@ def test_a_preload_is_a_load_that_grows() -> None:
         },
         gravity=(0.0, 0.0, 0.0),
     )
-    (found,) = critical_factors(column).cases
+    (found,) = buckling_factors(column).cases
     assert (found.load, found.place, found.kind) == (STATED, REST, "bifurcation")
     assert 0.5 * found.factor == pytest.approx(np.pi**2 * 200e9 * np.pi * 2e-3**4 / 64.0 / 0.2**2, rel=1e-3)
-    (told,) = critical_factors(column, demand=80.0).cautions
+    (told,) = buckling_factors(column, demand=80.0).warnings
     assert told.where == REST

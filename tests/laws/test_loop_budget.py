@@ -16,7 +16,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.xy_stage import xy_stage
 from flexstage.control.example import integral, integral_loop
 from flexstage.control.noise import DisturbanceResponse, noise_budget
-from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Sensor, hardware
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Sensor, sampling_chain
 from flexstage.control.plant_models.plants import plant, sensor_filter
 from flexstage.control.systems.closed import loop
 from flexstage.control.systems.system import select
@@ -83,7 +83,7 @@ def test_amplifier_noise_is_its_integral(seed):
 
 def _filtered(rate, **settings):
     """One axis with an amplifier's and a gauge's lag, and a filter."""
-    given = hardware(
+    given = sampling_chain(
         parallelogram(),
         rate=rate,
         delay=70e-6 if rate else 0.0,
@@ -111,7 +111,7 @@ def test_gauge_noise_is_its_integral(rate):
 
 def test_what_enters_at_the_samples_is_its_integral():
     """A gauge without lag: n^2 up to half the rate; rounding of gauge and converter: q^2/12, which is 2 T q^2/12 over frequency."""
-    given = hardware(parallelogram(), rate=5e3, delay=70e-6, amplifiers=AmplifierSettings(bits=12))
+    given = sampling_chain(parallelogram(), rate=5e3, delay=70e-6, amplifiers=AmplifierSettings(bits=12))
     closed = integral_loop(150.0, replace(given, sensors=Table({"S": Sensor(noise_density=3e-12, resolution=2e-10)})))
     found = noise_budget(closed, {}, (1e-3, 2500.0), OUTPUTS)
     rates = np.log(closed.system.poles[np.abs(closed.system.poles) > 1e-9].astype(complex)) / closed.step
@@ -129,7 +129,7 @@ def test_what_enters_at_the_samples_is_its_integral():
 def test_fast_samples_are_a_continuous_loop():
     """Gauge and amplifier noise at 200 kHz, and without samples."""
     continuous = noise_budget(_filtered(None), {}, (1.0, 400.0), OUTPUTS)
-    given = hardware(
+    given = sampling_chain(
         parallelogram(),
         rate=2e5,
         amplifiers=AmplifierSettings(bandwidth=1500.0, noise_density=1e-4),
@@ -198,7 +198,7 @@ def _by_states(closed, column, process):
 
 def _two_axes():
     stage = xy_stage()
-    given = hardware(stage, rate=10e3, delay=80e-6, amplifiers=AmplifierSettings(bandwidth=2000.0, noise_density=2e-4, bits=10))
+    given = sampling_chain(stage, rate=10e3, delay=80e-6, amplifiers=AmplifierSettings(bandwidth=2000.0, noise_density=2e-4, bits=10))
     one = plant(lumped(stage), ideal(stage), given, modes=3)
     return loop(one, integral(one, 200.0))
 
@@ -238,7 +238,7 @@ def test_sources_add_up():
 
 
 def test_amplifiers_without_lag_count_over_the_band():
-    given = hardware(parallelogram(), rate=5e3, delay=1e-4, amplifiers=AmplifierSettings(noise_density=1e-4))
+    given = sampling_chain(parallelogram(), rate=5e3, delay=1e-4, amplifiers=AmplifierSettings(noise_density=1e-4))
     found = [noise_budget(integral_loop(100.0, given), {}, (0.1, high), ("relative.x",)) for high in (100.0, 10_000.0)]
     assert any("have no lag" in note for note in found[0].notes)
     small, large = (_square(None, Kind.AMPLIFIER, "B", one)[0] for one in found)

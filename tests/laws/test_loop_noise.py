@@ -14,7 +14,7 @@ from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.example import integral
 from flexstage.control.noise import noise_budget
-from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, hardware
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.noise import noise_series, series
@@ -66,7 +66,7 @@ def small_loop(resolution: float = 2e-10):
     stage = parallelogram()
     gauges = GaugeSettings(noise_density=1e-11, resolution=resolution, filter_order=2, filter_corner=6000.0)
     amplifiers = AmplifierSettings(bandwidth=1000.0, noise_density=1e-5)
-    given = hardware(stage, rate=RATE, delay=15e-6, gauges=gauges, amplifiers=amplifiers)
+    given = sampling_chain(stage, rate=RATE, delay=15e-6, gauges=gauges, amplifiers=amplifiers)
     one = plant(lumped(stage), ideal(stage), given, modes=3)
     return loop(one, integral(one, 100.0))
 

@@ -32,13 +32,13 @@ from flexstage.control.study.resolve import default_rate, resolve
 from flexstage.control.study.runs import rest_rms
 from flexstage.control.study.setup import (
     AmplifierSetup,
+    AxisAmplitudes,
     ControllerSetup,
     DampingSetup,
     Floor,
     GaugeSetup,
     HystereticStacks,
     LoopSetup,
-    Motion,
     RasterMotion,
     SineMotion,
     SpiralMotion,
@@ -214,7 +214,9 @@ def test_the_inverse_of_the_stacks_own_model_is_exact_and_helps_others_fivefold(
 def test_stacks_creep_by_their_law() -> None:
     """In open loop a step goes on by as much a decade as is stated, from a tenth of a second on."""
     still, creeping = (HystereticStacks(width=0.01, creep=creep) for creep in (None, 0.02))
-    asked = LoopSetup(controller=ControllerSetup(kind=ControllerKind.NONE), trajectory=StepMotion(amplitude=Motion(x=1e-6)), seconds=0.6)
+    asked = LoopSetup(
+        controller=ControllerSetup(kind=ControllerKind.NONE), trajectory=StepMotion(amplitude=AxisAmplitudes(x=1e-6)), seconds=0.6
+    )
     first, second = (
         loop_study(parallelogram(), LoopSetup(**{**asked.__dict__, "hysteresis": each})).runs[0].simulated for each in (still, creeping)
     )
@@ -225,7 +227,7 @@ def test_stacks_creep_by_their_law() -> None:
 
 def test_loads_that_are_carried_take_of_the_strokes() -> None:
     """290 of 300 um are there for a command, but not beside the 16 um that carry the platform's weight."""
-    slow, far = ControllerSetup(integral=5.0), StepMotion(amplitude=Motion(z=290e-6))
+    slow, far = ControllerSetup(integral=5.0), StepMotion(amplitude=AxisAmplitudes(z=290e-6))
     assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
     with pytest.raises(DesignError, match="trajectory z: it leaves what the strokes reach"):
         loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
@@ -254,7 +256,7 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
     assert found.noise.changes[0] < 0.01
     assert found.resting is not None
     assert 2.0 * found.noise.rms[0] < found.resting.low[0] < found.resting.rms[0] < found.resting.high[0] < 5e-10
-    assert any("rounding is slow" in each.what for each in found.cautions)
+    assert any("rounding is slow" in each.what for each in found.warnings)
     table = noise_table(found)
     assert [column.head for column in table.columns] == [
         "motion",
@@ -321,7 +323,7 @@ def test_steps_tell_what_every_other_axis_does() -> None:
 
 def test_others_count_departures_from_what_was_asked() -> None:
     """Of six loops: along the axis itself nothing, along others the error."""
-    setup = LoopSetup(controller=ControllerSetup(integral=5.0), trajectory=StepMotion(amplitude=Motion(x=1e-6)), seconds=0.02)
+    setup = LoopSetup(controller=ControllerSetup(integral=5.0), trajectory=StepMotion(amplitude=AxisAmplitudes(x=1e-6)), seconds=0.02)
     found = loop_study(double_triangle(), setup)
     seen = found.runs[0].simulated
     told = other_motions(seen, "x")

@@ -15,8 +15,8 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Pla
 from flexstage.models.linear.static import static_gain
 from flexstage.models.mapped import borne_compliance, computed_stiffness, mapped
 from flexstage.parts.body import Body, Inertia
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo

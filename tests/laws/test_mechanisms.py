@@ -23,8 +23,8 @@ from flexstage.models.linear.model import Contribution, assemble
 from flexstage.models.linear.port import ports
 from flexstage.models.linear.static import displacement, part_deformation, static_gain
 from flexstage.parts.body import Body
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.freedom import Freedom, others
-from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted, is_actuator
 from flexstage.parts.piezo import Piezo
 from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, spatial_rotation, transport
@@ -297,7 +297,7 @@ def towards_ideal(mechanism, step):
             continue
         size = {freedom: 1e-8 if freedom in others((Freedom.RX, Freedom.RY, Freedom.RZ)) else 1e-3 for freedom in Freedom}
         entries = [size[freedom] * (1.0 / step if freedom in part.intended else step) for freedom in Freedom]
-        parts[name] = Given(tuple(map(tuple, np.diag(entries).tolist())), part.intended)
+        parts[name] = ComplianceMatrix(tuple(map(tuple, np.diag(entries).tolist())), part.intended)
     return replace(mechanism, parts=parts)
 
 

@@ -25,9 +25,9 @@ from flexstage.models.nonlinear.elements.element import energy, shape, tangent
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.models.nonlinear.state import Effort, Status
+from flexstage.models.nonlinear.state import SolverOptions, Status
 from flexstage.parts.body import Body, Inertia
-from flexstage.parts.given import Given as Matrix
+from flexstage.parts.compliance_matrix import ComplianceMatrix as Matrix
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.rod import Rod
@@ -247,11 +247,11 @@ def taken_at_once(thickness: float, counts: tuple[int, int, int]) -> None:
     grid = np.stack(np.meshgrid(*ranges, indexing="ij"), -1).reshape(-1, 3)
     wrench, unit = np.zeros((len(grid), 6)), UNIT * (thickness / LEAF.thickness) ** 3
     wrench[:, :2], wrench[:, 5] = grid[:, :2] * unit, grid[:, 2] * unit * LEAF.length
-    at_once = Effort(halvings=0, arcs=0)  # some of them lie beyond a limit point
-    found = equilibrium(model, loads(wrench), effort=at_once)
+    at_once = SolverOptions(halvings=0, arcs=0)  # some of them lie beyond a limit point
+    found = equilibrium(model, loads(wrench), options=at_once)
     assert found.converged.all()
     assert found.iterations.mean() < 6.2
-    alone = equilibrium(model, loads(wrench[37]), effort=at_once)
+    alone = equilibrium(model, loads(wrench[37]), options=at_once)
     assert alone.twist() == pytest.approx(found.twist()[37], abs=1e-12)
 
 

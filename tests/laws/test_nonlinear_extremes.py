@@ -12,9 +12,9 @@ import pytest
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import assemble
-from flexstage.models.nonlinear.paths.critical import unstable_motions
+from flexstage.models.nonlinear.paths.critical_load import unstable_motions
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.models.nonlinear.state import Effort
+from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
@@ -108,7 +108,7 @@ def followed(model: Nonlinear, wrench: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Twists (b, 6) at the end of 64 steps of load, each from the last, and whether (b,) all of them were found and stable."""
     last, firm = None, np.ones(len(wrench), dtype=bool)
     for share in STEPS:
-        last = equilibrium(model, loads(share * wrench), start=last, effort=Effort(halvings=0))
+        last = equilibrium(model, loads(share * wrench), start=last, options=SolverOptions(halvings=0))
         firm &= last.converged & (unstable_motions(last) == 0)
         if not firm.any():
             break

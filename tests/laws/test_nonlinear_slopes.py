@@ -19,9 +19,9 @@ from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.models.nonlinear.compiled import kernel
 from flexstage.models.nonlinear.elements.strain import strains
 from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium
+from flexstage.models.nonlinear.gradients import evaluate_designs, gradients
 from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.paths.critical import critical
-from flexstage.models.nonlinear.slopes import over_designs, slopes
+from flexstage.models.nonlinear.paths.critical_load import critical_load
 from flexstage.models.nonlinear.stage import nonlinear
 from tests.laws.test_nonlinear import LEAF, NONE, SPACE, UNIT, guide, loads
 from tests.laws.test_nonlinear_extremes import stage, wrenches
@@ -41,7 +41,7 @@ def test_slopes_by_the_modulus_are_those_by_forces(seed: int):
     rng = np.random.default_rng([11, seed])
     mechanism = stage(rng)
     wrench = 0.03 * wrenches(rng, nonlinear(mechanism), 1)[0]
-    (found,) = slopes(mechanism, ["materials.steel.young"], State.twist, loads(wrench))
+    (found,) = gradients(mechanism, ["materials.steel.young"], State.twist, loads(wrench))
     expected = -moved_by_loads(mechanism, wrench)
     assert found * mechanism.materials["steel"].young == pytest.approx(expected, abs=1e-7 * np.max(np.abs(expected)))
 
@@ -56,7 +56,7 @@ LENGTHS = (
 def test_slopes_by_all_lengths_are_a_larger_stage():
     wrench = SPACE * UNIT
     state = equilibrium(nonlinear(guide()), loads(wrench))
-    found = slopes(guide(), LENGTHS, State.twist, loads(wrench))
+    found = gradients(guide(), LENGTHS, State.twist, loads(wrench))
     values = np.array([get(guide(), name) for name in LENGTHS])
     larger = values @ found + moved_by_loads(guide(), wrench, (2, 2, 2, 3, 3, 3))
     expected = np.concatenate([state.displacement(), np.zeros(3)])
@@ -67,7 +67,7 @@ def scaled_by_the_modulus(results: Callable[[State], np.ndarray], powers: list[f
     """Of a held stage frequencies go with the root of the modulus, forces, stresses and critical loads with the modulus."""
     held = {"platform.y": 0.01}
     expected = results(equilibrium(nonlinear(guide()), hold=held))
-    (found,) = slopes(guide(), ["materials.steel.young"], results, hold=held)
+    (found,) = gradients(guide(), ["materials.steel.young"], results, hold=held)
     scale = np.maximum(np.abs(expected), 1e-3 * np.max(np.abs(expected)))
     assert np.max(np.abs(200e9 * found - np.array(powers) * expected) / scale) < 1e-6
 
@@ -80,12 +80,12 @@ def test_slopes_of_frequencies_forces_and_stresses():
 
 @pytest.mark.full
 def test_slopes_of_critical_loads():
-    scaled_by_the_modulus(lambda state: np.array([critical(state.model, {"platform.fx": -1.0}).factor]), [1.0])
+    scaled_by_the_modulus(lambda state: np.array([critical_load(state.model, {"platform.fx": -1.0}).factor]), [1.0])
 
 
 def test_a_batch_of_designs_is_its_designs():
     thicknesses = np.array([0.4e-3, 0.5e-3, 0.6e-3])
-    found = over_designs(set_value(guide(), "parts.leaf.thickness", thicknesses), State.twist, loads(SPACE * UNIT * [[1.0], [0.5]]))
+    found = evaluate_designs(set_value(guide(), "parts.leaf.thickness", thicknesses), State.twist, loads(SPACE * UNIT * [[1.0], [0.5]]))
     assert found.shape == (3, 2, 6)
     alone = equilibrium(nonlinear(set_value(guide(), "parts.leaf.thickness", 0.6e-3)), loads(SPACE * UNIT)).twist()
     assert found[2, 0] == pytest.approx(alone, abs=1e-14)
@@ -134,4 +134,4 @@ def test_designs_of_another_structure_are_refused_by_name():
 
 def test_slopes_are_by_numbers_that_are_stated():
     with pytest.raises(fs.DesignError, match="single numbers"):
-        slopes(guide(), ["parts.leaf"], State.twist)
+        gradients(guide(), ["parts.leaf"], State.twist)

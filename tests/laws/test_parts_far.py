@@ -20,7 +20,9 @@ from tests.show.zoo import PARTS
 
 STEEL = fs.Material(young=200e9, poisson=0.3, density=7750.0)
 MEMBRANE = fs.Membrane("steel", 8e-3, 30e-3, 0.2e-3, mass=0.01)
-GIVEN = fs.Given(compliance=tuple(tuple(row) for row in np.diag([1e-7, 1e-6, 1e-6, 1e-2, 1e-2, 1e-2]).tolist()), free=(), mass=0.03)
+GIVEN = fs.ComplianceMatrix(
+    compliance=tuple(tuple(row) for row in np.diag([1e-7, 1e-6, 1e-6, 1e-2, 1e-2, 1e-2]).tolist()), free=(), mass=0.03
+)
 KINDS: dict[str, Part] = {**PARTS, "membrane": MEMBRANE, "given": GIVEN, "stack": fs.Piezo(60e-6, 50e6, 0.04, 0.01, mass=0.05)}
 LOOSE = ("ball", "coil", "spring")
 """Kinds that hold a body in some directions only: they are tried between a body and the ground that others hold too."""

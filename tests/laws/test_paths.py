@@ -12,11 +12,11 @@ import flexstage as fs
 from flexstage.analysis.assessment.judge import judge, measure_all
 from flexstage.analysis.assessment.measures import measure_kind
 from flexstage.analysis.assessment.requirements import measure, requirements
-from flexstage.analysis.cautions import model_findings
+from flexstage.analysis.caveats import model_findings
 from flexstage.analysis.loaded.course import course
 from flexstage.mechanism.design import design, designs
 from flexstage.mechanism.store import dumps, loads
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.execution.run import sweep
@@ -49,7 +49,7 @@ def test_what_is_judged_along_a_path_is_what_equilibria_say():
     assert found["out.motion.x"] == pytest.approx(abs(ends.displacement()[2, 0] - rest.displacement()[0]), rel=1e-9)
     assert found["frequency.1 over out"] == pytest.approx(np.min(fs.modes(fs.linearise(ends)).frequencies[:, 0]), rel=1e-6)
     slender = 2.0 * np.pi**2 * UNIT / 9.80665
-    assert found["buckling.factor"] == pytest.approx(fs.critical(model, {"weight": 1.0}, weight=0.0).factor, rel=1e-5)
+    assert found["buckling.factor"] == pytest.approx(fs.critical_load(model, {"weight": 1.0}, weight=0.0).factor, rel=1e-5)
     assert 1.0 < found["buckling.factor"] / slender < 1.1
 
 
@@ -166,10 +166,10 @@ starts = 1
 """
     )
     study = load_study(at_its_stroke)
-    found = optimise(study, load_wanted(study))
+    found = optimise(study, load_optimisation(study))
     assert found.final is not None
     best = study.mechanism_for(values_of(study, found.final.shares))
-    path = fs.path(fs.nonlinear(best), "platform.y", np.array([0.0, 10e-3]))
+    path = fs.load_path(fs.nonlinear(best), "platform.y", np.array([0.0, 10e-3]))
     told = fs.stroke(path).along.values[:, 2]
     assert np.min(told) == pytest.approx(3e3, rel=1e-3)
     assert [each.name for each in found.binding] == ["out.stiffness at least 3 N/mm"]

@@ -21,7 +21,7 @@ from flexstage.control.study.resolve import resolve, retain_modes
 from flexstage.control.study.retained import control_and_modes
 from flexstage.control.study.setup import AmplifierSetup, ControllerSetup, GaugeSetup, LoopSetup
 from flexstage.control.study.study import loop_study
-from flexstage.control.systems.closed import Cut, loop
+from flexstage.control.systems.closed import LoopBreak, loop
 from flexstage.control.systems.curves import curves
 from flexstage.control.systems.system import select
 from flexstage.mechanism.assembly.pattern import Pose
@@ -88,7 +88,7 @@ def _spring(random, mass, frequency, soft=()):
 
 def _figures(closed):
     """Peaks of S and T, and every margin of one loop at a time."""
-    high, found = peaks(closed, Cut.POSE), margins(closed, Cut.POSE, curves(closed, Cut.POSE)).table.values
+    high, found = peaks(closed, LoopBreak.POSE), margins(closed, LoopBreak.POSE, curves(closed, LoopBreak.POSE)).table.values
     return np.array([high.sensitivity.value, high.complementary.value, *np.asarray(found).ravel()])
 
 
@@ -166,9 +166,9 @@ def test_stated_modes_are_kept_to_and_what_they_hide_is_said_with_numbers():
     stated = loop_study(stage, LoopSetup(modes=2))
     assert len(stated.plant.frequencies) == 2
     assert not stated.retention.complete
-    (warning,) = [str(each) for each in stated.cautions if each.where == "modes"]
+    (warning,) = [str(each) for each in stated.warnings if each.where == "modes"]
     every = loop(retain_modes(stated.settled, np.ones(24, dtype=bool)).plant, stated.controller.system)
     for closed in (stated.closed, every):
-        assert f"the peak of S is {peaks(closed, Cut.POSE).sensitivity.value:.3g}"[:-1] in warning
+        assert f"the peak of S is {peaks(closed, LoopBreak.POSE).sensitivity.value:.3g}"[:-1] in warning
     with pytest.raises(DesignError, match="with all modes a pole at"):
         loop_study(stage, LoopSetup(modes=6))

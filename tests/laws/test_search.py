@@ -40,18 +40,18 @@ from flexstage.control.study.setup import (
     GoalSetup,
     LoopNumbers,
     LoopSetup,
-    NotchAt,
+    NotchSetup,
     VibrationSetup,
 )
 from flexstage.control.study.study import loop_study
-from flexstage.control.systems.closed import Cut, Loop, loop
+from flexstage.control.systems.closed import Loop, LoopBreak, loop
 from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.fit import Bounds
-from flexstage.control.tuning.goal import Kind, Tuning
 from flexstage.control.tuning.search import Field, Found, Joint, Variant, beside_one_another, field, loud_enough, search, variants
+from flexstage.control.tuning.search_spec import SearchSpec
 from flexstage.control.tuning.shape import Shape
+from flexstage.control.tuning.spec import Kind, Tuning
 from flexstage.control.tuning.view import view
-from flexstage.control.tuning.wish import Wish
 
 
 def moved(plant: Plant, offset: float) -> Plant:
@@ -66,9 +66,9 @@ def closed(plant: Plant, tuned: Tuning, offset: float) -> Loop:
 
 
 @cache
-def found(wish: Wish) -> tuple[Plant, Tuning]:
+def found(spec: SearchSpec) -> tuple[Plant, Tuning]:
     plant = integral_loop().plant
-    return plant, find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, wish, {}))
+    return plant, find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, spec, {}))
 
 
 @pytest.mark.parametrize("law", [PI(0.7, 300.0), PID(0.7, 300.0, 1e-3, 900.0)])
@@ -111,9 +111,9 @@ def test_what_passes_the_bounds_has_exact_derivatives(count):
 
     shape = Shape(1, 5e-4)
     points = tuple(shape.point(PI(0.3 + 0.02 * loop, 90.0), (Notch(99.0, 0.05, 0.8),)) + 0.02 * rng.normal(size=5) for loop in range(count))
-    wish = Wish(sensitivity=1.2, overshoot=0.02)
+    spec = SearchSpec(sensitivity=1.2, overshoot=0.02)
     field = Field(
-        wish, (Variant(0.0, 1.0, 0.0, 1.2),) * 2, np.stack([frequencies] * 2), np.stack([plants(frequencies)] * 2), lines,
+        spec, (Variant(0.0, 1.0, 0.0, 1.2),) * 2, np.stack([frequencies] * 2), np.stack([plants(frequencies)] * 2), lines,
         plants(lines)[None],
         rng.normal(size=(60, count, 2)), np.ones((60, count)), tuple(range(count)),
     )  # fmt: skip
@@ -129,16 +129,16 @@ def test_what_passes_the_bounds_has_exact_derivatives(count):
 
 def test_the_peak_of_s_is_kept_at_every_offset_of_the_modes():
     """The exact peak (no grid of frequencies), at offsets that the search did not look at."""
-    plant, tuned = found(Wish())
+    plant, tuned = found(SearchSpec())
     assert tuned.judgement.stable
     for offset in np.linspace(-0.02, 0.02, 7):
-        assert peaks(closed(plant, tuned, offset), Cut.POSE).sensitivity.value < 2.005
+        assert peaks(closed(plant, tuned, offset), LoopBreak.POSE).sensitivity.value < 2.005
     assert all(verdict(closed(plant, tuned, offset)).stable for offset in (-0.05, 0.05))
 
 
 def test_a_delay_margin_is_held():
-    plant, tuned = found(Wish(delay_margin=1e-3))
-    assert margins(closed(plant, tuned, 0.0), Cut.POSE).of("x").delay.value > 1e-3
+    plant, tuned = found(SearchSpec(delay_margin=1e-3))
+    assert margins(closed(plant, tuned, 0.0), LoopBreak.POSE).of("x").delay.value > 1e-3
 
 
 @pytest.mark.full
@@ -152,16 +152,16 @@ def test_a_delay_margin_is_held_in_every_loop_of_the_shipped_stage(bandwidth):
         double_triangle(), LoopSetup(amplifier=amplifier, gauges=gauges, floor=Floor(floor, floor, floor), controller=controller)
     )
     tuned = make_controller(given, given.plant.coordinates.strokes).tuning
-    found = margins(closed(given.plant, tuned, 0.0), Cut.POSE)
+    found = margins(closed(given.plant, tuned, 0.0), LoopBreak.POSE)
     assert min(each.delay.value for each in found.channels) >= 3e-4
     assert np.min(bandwidths(closed(given.plant, tuned, 0.0)).rejection) > 160.0  # also rz, which no floor shakes
-    assert all(peaks(closed(given.plant, tuned, offset), Cut.POSE).sensitivity.value <= 2.0 for offset in (-0.02, 0.0, 0.02))
+    assert all(peaks(closed(given.plant, tuned, offset), LoopBreak.POSE).sensitivity.value <= 2.0 for offset in (-0.02, 0.0, 0.02))
 
 
 def test_delays_are_tried_at_every_turn_up_to_the_one_asked_for():
     """A mode far above the crossing may be unstable with half the delay, and stable with all of it."""
     later, frequencies = 3e-4, np.array([10.0, 1485.0])
-    late = [-np.angle(each.factor(frequencies)) for each in variants(Wish(delay_margin=later)) if each.later]
+    late = [-np.angle(each.factor(frequencies)) for each in variants(SearchSpec(delay_margin=later)) if each.later]
     assert np.ptp([one[0] for one in late]) < 1e-12  # 10 Hz turns by 1 deg at most
     turned = np.sort([one[1] for one in late])
     assert np.max(np.diff(turned)) <= 0.25 * np.pi + 1e-9
@@ -169,20 +169,20 @@ def test_delays_are_tried_at_every_turn_up_to_the_one_asked_for():
 
 
 def test_the_same_search_finds_the_same():
-    plant, tuned = found(Wish())
-    again = find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, Wish(), {}))
+    plant, tuned = found(SearchSpec())
+    again = find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, SearchSpec(), {}))
     assert (again.controller.laws, again.notches) == (tuned.controller.laws, tuned.notches)
 
 
 def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     with pytest.raises(DesignError, match=r"rejection with an overshoot of 20 % at most"):
-        found(Wish(rejection=4000.0))
+        found(SearchSpec(rejection=4000.0))
     with pytest.raises(DesignError, match="no loop that rejects so far bears it"):
-        found(Wish(rejection=500.0, delay_margin=1e-3))
+        found(SearchSpec(rejection=500.0, delay_margin=1e-3))
     monkeypatch.setattr("flexstage.control.tuning.find.search", lambda *_: None)
     monkeypatch.setattr("flexstage.control.tuning.find.advance", lambda *_: None)
     with pytest.raises(DesignError, match=r"settling: the nearest comes to .* ms, and 0.2 ms is asked for"):  # the tuner's own loop
-        found(Wish(settling=2e-4))
+        found(SearchSpec(settling=2e-4))
 
     def refuse(*_):
         raise DesignError([Finding("tuning", "no bandwidth is reached, 27 tried", "Try PID")])
@@ -191,7 +191,7 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     with pytest.raises(
         DesignError, match=r"no PI within .* that settles within 0.2 ms was found; without a search no bandwidth is reached"
     ):
-        found(Wish(settling=2e-4))
+        found(SearchSpec(settling=2e-4))
 
 
 def shipped(controller: ControllerSetup) -> tuple[ResolvedSetup, np.ndarray]:
@@ -207,10 +207,10 @@ def judged(given: ResolvedSetup, wired: Loop) -> tuple[np.ndarray, np.ndarray]:
 
 
 BY_HAND = (
-    LoopNumbers(("x", "y"), 4.85, 676.0, notches=(NotchAt(103.5, 0.0409, 2.37), NotchAt(174.4, 0.424, 0.321))),
-    LoopNumbers(("z",), 7.0, 893.0, notches=(NotchAt(113.5, 0.0439, 1.94),)),
-    LoopNumbers(("rx", "ry"), 6.54, 1340.0, notches=(NotchAt(98.39, 0.063, 2.58), NotchAt(175.9, 0.644, 0.0341))),
-    LoopNumbers(("rz",), 7.0, 934.0, notches=(NotchAt(129.8, 0.0361, 1.85),)),
+    LoopNumbers(("x", "y"), 4.85, 676.0, notches=(NotchSetup(103.5, 0.0409, 2.37), NotchSetup(174.4, 0.424, 0.321))),
+    LoopNumbers(("z",), 7.0, 893.0, notches=(NotchSetup(113.5, 0.0439, 1.94),)),
+    LoopNumbers(("rx", "ry"), 6.54, 1340.0, notches=(NotchSetup(98.39, 0.063, 2.58), NotchSetup(175.9, 0.644, 0.0341))),
+    LoopNumbers(("rz",), 7.0, 934.0, notches=(NotchSetup(129.8, 0.0361, 1.85),)),
 )
 
 
@@ -245,7 +245,7 @@ def test_damped_legs_leave_loops_without_a_mode_to_notch(kind):
     given = resolve(double_triangle(), LoopSetup(floor=Floor(floor, floor, floor), controller=controller, damping=DampingSetup()))
     tuned = make_controller(given, given.plant.coordinates.strokes).tuning
     wired = closed(given.plant, tuned, 0.0)
-    assert peaks(wired, Cut.POSE).sensitivity.value <= 2.0
+    assert peaks(wired, LoopBreak.POSE).sensitivity.value <= 2.0
     assert np.min(bandwidths(wired).rejection) > 90.0
 
 
@@ -258,7 +258,7 @@ def test_starts_of_loops_that_are_searched_together_stand_beside_one_another():
 def test_noise_gives_way_where_it_alone_keeps_a_loop_from_what_is_wanted():
     plant = integral_loop().plant
     seen = view(plant, platform_loops(plant.coordinates), 0.0)
-    free = field(seen, Wish(spread=0.0), {})
+    free = field(seen, SearchSpec(spread=0.0), {})
     found = search(seen, free, Kind.PI)
     assert found is not None
     wanted = [0.8 * each for each in found.reached]
@@ -276,7 +276,7 @@ def test_noise_gives_way_where_it_alone_keeps_a_loop_from_what_is_wanted():
 def test_a_search_looks_closer_where_a_peak_was_passed():
     plant = integral_loop().plant
     seen = view(plant, platform_loops(plant.coordinates), 0.02, (0.0, -0.02, 0.02, -0.05, 0.05))
-    for within, most in ((field(seen, Wish(), {}), 0.2), (field(seen, Wish(), {}, (300.0,)), 0.006)):
+    for within, most in ((field(seen, SearchSpec(), {}), 0.2), (field(seen, SearchSpec(), {}, (300.0,)), 0.006)):
         for variant, frequencies in zip(within.variants, within.frequencies, strict=True):
             place = np.searchsorted(frequencies, 301.0 * (1.0 + variant.offset))
             assert frequencies[place] / frequencies[place - 1] - 1.0 < most
@@ -312,8 +312,8 @@ def test_numbers_stated_by_axis_give_what_was_measured_with_them():
     far, floor = judged(given, wired)
     assert far[[0, 2, 3, 5]] == pytest.approx([304.0, 206.0, 131.0, 239.0], abs=0.6)
     assert floor[[0, 2, 3]] == pytest.approx([3.6e-9, 2.9e-9, 15.5e-9], rel=0.02)
-    assert peaks(wired, Cut.POSE).sensitivity.value == pytest.approx(1.92, abs=0.005)
-    assert min(each.delay.value for each in margins(wired, Cut.POSE).channels) == pytest.approx(0.16e-3, rel=0.02)
+    assert peaks(wired, LoopBreak.POSE).sensitivity.value == pytest.approx(1.92, abs=0.005)
+    assert min(each.delay.value for each in margins(wired, LoopBreak.POSE).channels) == pytest.approx(0.16e-3, rel=0.02)
 
 
 @pytest.mark.full
@@ -324,7 +324,7 @@ def test_the_shipped_stage_is_brought_farther_than_by_hand():
     assert np.all(far[[0, 2, 3, 5]] >= [240.0, 190.0, 120.0, 215.0])
     assert np.all(floor[[0, 2, 3]] <= [4e-9, 3.2e-9, 17e-9])
     for offset in (-0.02, -0.01, 0.01, 0.02):
-        assert peaks(closed(given.plant, tuned, offset), Cut.POSE).sensitivity.value <= 2.0
+        assert peaks(closed(given.plant, tuned, offset), LoopBreak.POSE).sensitivity.value <= 2.0
     assert np.all(bandwidths(closed(given.plant, tuned, -0.02)).rejection[[0, 2, 3, 5]] >= [230.0, 180.0, 110.0, 200.0])
     assert all(verdict(closed(given.plant, tuned, offset)).stable for offset in (-0.05, 0.05))
     for offset, soon in ((0.0, 25e-3), (-0.02, 30e-3), (0.02, 30e-3)):
@@ -345,7 +345,7 @@ def test_a_plant_that_is_unstable_by_itself_is_refused():
     plant = integral_loop().plant
     pushed = replace(plant, system=replace(plant.system, A=plant.system.A + 400.0 * np.eye(len(plant.system.A))))
     with pytest.raises(DesignError, match="the stage by itself is unstable: it grows by"):
-        find(pushed, platform_loops(plant.coordinates), Asked(Kind.PI, Wish(), {}))
+        find(pushed, platform_loops(plant.coordinates), Asked(Kind.PI, SearchSpec(), {}))
 
 
 def test_a_controller_of_another_stage_is_refused_by_the_loops_it_names():
@@ -358,5 +358,9 @@ def test_a_controller_of_another_stage_is_refused_by_the_loops_it_names():
 def test_goals_that_contradict_one_another_are_all_said_before_anything_is_searched():
     plant = integral_loop().plant
     with pytest.raises(DesignError) as told:
-        find(plant, platform_loops(plant.coordinates), Asked(Kind.RESONANT, Wish(rejection=500.0, settling=1e-3, delay_margin=1e-3), {}))
+        find(
+            plant,
+            platform_loops(plant.coordinates),
+            Asked(Kind.RESONANT, SearchSpec(rejection=500.0, settling=1e-3, delay_margin=1e-3), {}),
+        )
     assert [each.where for each in told.value.findings] == ["controller.goal"] * 3

@@ -16,15 +16,15 @@ from flexstage.control.robustness.stability_margins import bandwidths, peaks
 from flexstage.control.show.report import comparison_report
 from flexstage.control.show.tables import comparison_table
 from flexstage.control.study.choices import ControllerKind, Criterion
-from flexstage.control.study.compare import Comparison, Rival, Turned, compare_controllers
+from flexstage.control.study.compare import Comparison, DetunedController, Rival, compare_controllers
 from flexstage.control.study.compare import rival as rival_of
-from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, NotchAt, VibrationSetup
+from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, NotchSetup, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.control.systems.closed import Cut, loop
+from flexstage.control.systems.closed import LoopBreak, loop
 from flexstage.control.tuning.outcome import Outcome, bench, outcome
 from flexstage.control.tuning.search import field
+from flexstage.control.tuning.search_spec import SearchSpec
 from flexstage.control.tuning.view import view
-from flexstage.control.tuning.wish import Wish
 
 VC_D = VibrationSetup(criterion=Criterion.VC_D)
 FLOOR = Floor(VC_D, VC_D, VC_D)
@@ -72,16 +72,16 @@ def test_what_belongs_to_one_controller_is_refused(tmp_path, capsys, monkeypatch
 
 def outcome_of(study: LoopStudy, gain: float) -> Outcome:
     seen = view(study.plant, platform_loops(study.plant.coordinates), 0.0)
-    return outcome(bench(seen, field(seen, Wish(spread=0.0), study.settled.floor)), study.controller.system, gain)
+    return outcome(bench(seen, field(seen, SearchSpec(spread=0.0), study.settled.floor)), study.controller.system, gain)
 
 
 def test_what_is_read_off_responses_is_what_the_whole_loop_says():
     """Of a controller as tuned and turned down: rejection, peak of S, noise, delay margin and steps, by other computations."""
     study = loop_study(
-        parallelogram(), LoopSetup(floor=FLOOR, controller=ControllerSetup(integral=900.0, notches=(NotchAt(1674.0, 0.02, 0.5),)))
+        parallelogram(), LoopSetup(floor=FLOOR, controller=ControllerSetup(integral=900.0, notches=(NotchSetup(1674.0, 0.02, 0.5),)))
     )
     found = rival_of(study)
-    turned = found.turned
+    turned = found.detuned
     assert turned.gains[0] == 1.0
     assert turned.rejection[0] == pytest.approx(found.rejection[0], rel=0.01)
     assert turned.delay_margin[0] == pytest.approx(found.delay_margin, rel=0.02)
@@ -90,7 +90,7 @@ def test_what_is_read_off_responses_is_what_the_whole_loop_says():
     wired = loop(study.plant, replace(control, C=0.5 * control.C, D=0.5 * control.D))
     half = outcome_of(study, 0.5)
     assert half.rejection[0][0] == pytest.approx(bandwidths(wired).rejection[0], rel=0.01)
-    assert half.peaks[0] == pytest.approx(peaks(wired, Cut.POSE).sensitivity.value, rel=0.01)
+    assert half.peaks[0] == pytest.approx(peaks(wired, LoopBreak.POSE).sensitivity.value, rel=0.01)
     budget = noise_budget(wired, study.settled.floor, (0.1, 5e3), ("relative.x",))
     floor = np.sqrt(budget.by_kind.values[0, list(budget.by_kind.columns).index("floor")])
     assert half.floor[0] == pytest.approx(floor, rel=0.05)
@@ -99,14 +99,19 @@ def test_what_is_read_off_responses_is_what_the_whole_loop_says():
 def test_settling_is_told_of_no_step_that_lasts_longer_than_what_is_looked_at():
     """A slow integrator's step is led to its end by the lines that are looked at; as it stands the simulation tells."""
     found = rival_of(loop_study(parallelogram(), LoopSetup(controller=ControllerSetup(integral=40.0))))
-    assert found.turned.settling[0] == found.settling[0] == pytest.approx(np.log(50.0) / 40.0, rel=0.02)
-    assert np.all(np.isnan(found.turned.settling[1:]))
+    assert found.detuned.settling[0] == found.settling[0] == pytest.approx(np.log(50.0) / 40.0, rel=0.02)
+    assert np.all(np.isnan(found.detuned.settling[1:]))
 
 
 def test_the_report_has_the_front_and_every_motion():
     line = np.geomspace(1.0, 0.1, 3)
     found = Comparison(
-        {"pi": replace(rival(rejection=300.0, noise=4e-9, settling=0.02, delay=1e-4), turned=Turned(line, line, line, line, line))}, {}
+        {
+            "pi": replace(
+                rival(rejection=300.0, noise=4e-9, settling=0.02, delay=1e-4), detuned=DetunedController(line, line, line, line, line)
+            )
+        },
+        {},
     )
     page = comparison_report(parallelogram(), LoopSetup(), found)
     assert "Motion by motion" in page
@@ -120,7 +125,7 @@ def test_processes_share_the_kinds_and_change_nothing():
     assert list(alone) == list(shared)
     for name, each in alone.items():
         assert np.array_equal(each.rejection, shared[name].rejection)
-        assert np.array_equal(each.turned.settling, shared[name].turned.settling)
+        assert np.array_equal(each.detuned.settling, shared[name].detuned.settling)
 
 
 @pytest.mark.full

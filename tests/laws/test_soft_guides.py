@@ -23,16 +23,16 @@ from flexstage.control.study.setup import ControllerSetup, GoalSetup, LoopSetup
 from flexstage.control.systems.sampling import discretise
 from flexstage.control.systems.system import System
 from flexstage.control.tuning import search
-from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.find import Asked, find
-from flexstage.control.tuning.goal import Goal, Kind, Tuning
+from flexstage.control.tuning.objective import TuningObjective
 from flexstage.control.tuning.outcome import bench, outcome
 from flexstage.control.tuning.search import field, variants
+from flexstage.control.tuning.search_spec import SearchSpec
+from flexstage.control.tuning.spec import Kind, Tuning, TuningSpec
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import view
 from flexstage.control.tuning.weigh import merit
-from flexstage.control.tuning.wish import Wish
 from flexstage.models.linear.model import Channel
 from tests.conftest import FULL
 
@@ -55,7 +55,7 @@ def guided(stiffness: float, rate: float = 8e3, late: float = 1.0) -> tuple[Plan
     return Plant(system, ("mode1", "mode1'"), coordinates, hardware, mode, ratio, 0, "a mass", "test"), unit
 
 
-def pid(stiffness: float, goal: Goal, late: float = 1.0) -> tuple[Tuning, np.ndarray]:
+def pid(stiffness: float, goal: TuningSpec, late: float = 1.0) -> tuple[Tuning, np.ndarray]:
     """The tuned loop, with k_p [N/m], k_i [N/(m s)], k_d [N s/m], where it passes 1 [Hz] and its peak of S."""
     one, unit = guided(stiffness, late=late)
     found = tune(one, platform_loops(one.coordinates), Task(Kind.PID, goal))
@@ -67,9 +67,9 @@ def pid(stiffness: float, goal: Goal, late: float = 1.0) -> tuple[Tuning, np.nda
 @pytest.mark.parametrize(("late", "sensitivity"), [(1.0, 2.0), pytest.param(0.3, 1.7, marks=pytest.mark.full), (2.5, 2.2)])
 def test_a_guide_far_below_the_crossing_changes_nothing(late, sensitivity):
     """From a free mass to 1e4 N/m: gains in newtons per metre, crossing and peak of S stay within 2 %."""
-    _, free = pid(0.0, Goal(None, sensitivity), late)
+    _, free = pid(0.0, TuningSpec(None, sensitivity), late)
     for stiffness in (1e-3, 1.0, 1e2, 1e4) if FULL else (1e-3, 1e4):
-        found, numbers = pid(stiffness, Goal(None, sensitivity), late)
+        found, numbers = pid(stiffness, TuningSpec(None, sensitivity), late)
         assert guided(stiffness)[0].frequencies[0] < 0.1 * found.bandwidth
         np.testing.assert_allclose(numbers, free, rtol=0.02)
 
@@ -79,7 +79,7 @@ def test_a_free_mass_by_closed_forms():
 
     A grid of PID laws on it, two zeros apart, of Tustin's rule too, reaches no more than a fifth more.
     """
-    found, (*gains, crossing, peak) = pid(0.0, Goal(None, 2.0, 0.0))
+    found, (*gains, crossing, peak) = pid(0.0, TuningSpec(None, 2.0, 0.0))
     step, corner = 1.0 / 8e3, found.controller.laws[0].filter
     frequencies = np.geomspace(0.5, 3.99e3, 3000)
     left = _sensitivity(np.array(gains), corner, step, frequencies)
@@ -124,7 +124,7 @@ def _sensitivity(gains: np.ndarray, corner: float, step: float, frequencies: np.
 
 def test_what_is_tried_depends_on_rate_and_delay_alone():
     """The same mass at twice the rate, as many samples late: twice the crossing, the same peak."""
-    once, twice = (tune(one, platform_loops(one.coordinates), Task(Kind.PID, Goal())) for one, _ in (guided(1.0), guided(1.0, 16e3)))
+    once, twice = (tune(one, platform_loops(one.coordinates), Task(Kind.PID, TuningSpec())) for one, _ in (guided(1.0), guided(1.0, 16e3)))
     assert twice.bandwidth == pytest.approx(2.0 * once.bandwidth, rel=0.005)
     assert twice.judgement.peak == pytest.approx(once.judgement.peak, rel=0.005)
 
@@ -175,7 +175,7 @@ def test_a_stage_on_a_soft_guide_is_tuned_as_on_none():
 
 
 @cache
-def _rejects_to(kind: ControllerKind, aim: Aim | None, stiffness: float) -> float:
+def _rejects_to(kind: ControllerKind, aim: TuningObjective | None, stiffness: float) -> float:
     """Where |S| first passes 1 [Hz], by the response of the plant times that of the law; not by the search's own numbers."""
     goal = None if aim is None else GoalSetup(objective=aim)
     found = _of_stage(stiffness, kind=kind, goal=goal)
@@ -202,10 +202,10 @@ def _rejects_to(kind: ControllerKind, aim: Aim | None, stiffness: float) -> floa
 @pytest.mark.parametrize(
     ("kind", "aim", "stiffness"),
     [
-        (ControllerKind.PID, Aim.REJECTION, 50.0),
-        pytest.param(ControllerKind.PID, Aim.BALANCE, 50.0, marks=pytest.mark.full),
-        pytest.param(ControllerKind.PID, Aim.REJECTION, 2e3, marks=pytest.mark.full),
-        pytest.param(ControllerKind.PI, Aim.BALANCE, 50.0, marks=pytest.mark.full),
+        (ControllerKind.PID, TuningObjective.REJECTION, 50.0),
+        pytest.param(ControllerKind.PID, TuningObjective.BALANCE, 50.0, marks=pytest.mark.full),
+        pytest.param(ControllerKind.PID, TuningObjective.REJECTION, 2e3, marks=pytest.mark.full),
+        pytest.param(ControllerKind.PI, TuningObjective.BALANCE, 50.0, marks=pytest.mark.full),
     ],
 )
 def test_a_search_rejects_as_far_as_the_tuner_it_begins_from(kind, aim, stiffness):
@@ -216,14 +216,14 @@ def test_a_search_that_finds_nothing_better_returns_what_it_began_from(monkeypat
     """Also where what it finds is worse."""
     one, _ = guided(100.0)
     loops = platform_loops(one.coordinates)
-    plain = tune(one, loops, Task(Kind.PID, Goal()))
+    plain = tune(one, loops, Task(Kind.PID, TuningSpec()))
     worse = replace(plain.controller.laws[0], proportional=0.1 * plain.controller.laws[0].proportional)
     known = search.known_loops
     monkeypatch.setattr(
         "flexstage.control.tuning.find.advance",
         lambda seen, within, controller: known(seen, within, replace(controller, laws=(worse,))),
     )
-    found = find(one, loops, Asked(Kind.PID, Wish(objective=Aim.REJECTION), {}))
+    found = find(one, loops, Asked(Kind.PID, SearchSpec(objective=TuningObjective.REJECTION), {}))
     assert found.controller.laws == plain.controller.laws
     assert "no better one was found" in found.reason
 
@@ -238,7 +238,7 @@ def test_linear_quadratic_control_does_not_depend_on_a_soft_guide(late):
     for stiffness in (0.0, 1e-3, 1e3, 1e4):
         one, _ = guided(stiffness, late=late)
         noise = Disturbances(1e-9, {"S": NOISE})
-        tuned = tune(one, platform_loops(one.coordinates), Task(Kind.LQG, Goal(), expected=noise))
+        tuned = tune(one, platform_loops(one.coordinates), Task(Kind.LQG, TuningSpec(), expected=noise))
         found.append([tuned.bandwidth, tuned.judgement.peak])
         assert tuned.judgement.peak <= 2.0
         assert tuned.judgement.growth < -0.2 * tuned.bandwidth  # observers too are not slower by decades than the loop
@@ -251,7 +251,9 @@ def test_linear_quadratic_control_reaches_as_far_as_a_grid_of_riccati_solutions(
     """Regulators and observers by scipy's discrete equation, on a model made here: none of the grid within 6 dB crosses higher."""
     stiffness, step = 100.0, 1.0 / 8e3
     one, _ = guided(stiffness)
-    tuned = tune(one, platform_loops(one.coordinates), Task(Kind.LQG, Goal(None, 2.0, 0.0), expected=Disturbances(1e-9, {"S": NOISE})))
+    tuned = tune(
+        one, platform_loops(one.coordinates), Task(Kind.LQG, TuningSpec(None, 2.0, 0.0), expected=Disturbances(1e-9, {"S": NOISE}))
+    )
     omega = np.sqrt(stiffness / MASS)
     flow = np.array([[0.0, 1.0, 0.0], [-(omega**2), -2.0 * RATIO * omega, 1.0 / MASS], [0.0, 0.0, 0.0]])
     held = scipy.linalg.expm(flow * step)
@@ -287,15 +289,15 @@ def _gain(A: np.ndarray, B: np.ndarray, cost: np.ndarray, effort: np.ndarray) ->
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("aim", list(Aim))
+@pytest.mark.parametrize("aim", list(TuningObjective))
 def test_weights_by_search_serve_the_aim_no_worse_than_those_they_begin_from(aim):
     """By the merit of both, from responses."""
     one, _ = guided(100.0)
     loops, noise = platform_loops(one.coordinates), Disturbances(1e-9, {"S": NOISE})
-    plain = tune(one, loops, Task(Kind.LQG, Goal(), expected=noise))
-    found = find(one, loops, Asked(Kind.LQG, Wish(objective=aim), {}, expected=noise))
-    seen = view(one, loops, 0.02, tuple(dict.fromkeys(each.offset for each in variants(Wish()))))
-    tried = bench(seen, field(seen, Wish(objective=aim), {}, fast=plain.bandwidth))
-    merits = [merit(Wish(objective=aim), outcome(tried, each.controller.system(seen.step))) for each in (plain, found)]
+    plain = tune(one, loops, Task(Kind.LQG, TuningSpec(), expected=noise))
+    found = find(one, loops, Asked(Kind.LQG, SearchSpec(objective=aim), {}, expected=noise))
+    seen = view(one, loops, 0.02, tuple(dict.fromkeys(each.offset for each in variants(SearchSpec()))))
+    tried = bench(seen, field(seen, SearchSpec(objective=aim), {}, fast=plain.bandwidth))
+    merits = [merit(SearchSpec(objective=aim), outcome(tried, each.controller.system(seen.step))) for each in (plain, found)]
     assert merits[1] >= merits[0]
     assert found.judgement.peak <= 2.0

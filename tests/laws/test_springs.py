@@ -30,7 +30,7 @@ from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.parts.body import Body, Inertia
-from flexstage.parts.given import Given
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.spring import Spring
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.spatial.rotation import exponential
@@ -56,7 +56,7 @@ def matrices(draw):
 @given(mechanisms())
 @examples(18, 200)
 def test_a_spring_with_the_stiffness_of_a_given_part_is_that_part(stage):
-    givens = {name: part for name, part in stage.parts.items() if isinstance(part, Given)}
+    givens = {name: part for name, part in stage.parts.items() if isinstance(part, ComplianceMatrix)}
     assume(givens)
     springs = {name: Spring(matrix=tuple(map(tuple, stiffness(part, None).tolist())), free=part.free) for name, part in givens.items()}
     massless = replace(stage, parts={**stage.parts, **{name: replace(part, mass=0.0) for name, part in givens.items()}})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.assessment.judge import judge
-from flexstage.analysis.workspace.reach import reach
+from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import all_strokes, workspace
@@ -18,7 +18,7 @@ from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.mount import mount
-from flexstage.mechanism.assembly.pattern import Facing, Normal, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Normal, Polar, Pose
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe, Stop
 from flexstage.mechanism.store import dumps, loads
@@ -74,7 +74,7 @@ def test_turning_closes_a_stop_by_its_arm():
     assert (held.high[rz], held.high[0]) == (free.high[rz], pytest.approx(GAP, rel=1e-12))
     np.testing.assert_array_equal(held.high[1:], free.high[1:])
     command = {"x": 1 * um, "rz": 40e-6}
-    corner = workspace(stage, ideal(stage), None, command=command).corner
+    corner = workspace(stage, ideal(stage), None, command=command).worst_case
     assert corner.actuators[-1] == "stops/end"
     assert corner.ratio[-1] == pytest.approx((1 * um + ARM * 40e-6) / GAP, rel=1e-9)
 
@@ -84,7 +84,7 @@ SIX_COORDINATES = ("x", "y", "z", "rx", "ry", "rz")
 
 @pytest.mark.parametrize("mirror", [None, *Normal])
 def test_a_stop_sees_what_a_gauge_in_its_place_reads(mirror):
-    pattern = Polar(0.05, 0.3, Facing.TANGENT, height=0.02, turn=0.4, mirror=mirror)
+    pattern = Polar(0.05, 0.3, InstanceOrientation.TANGENT, height=0.02, turn=0.4, mirror=mirror)
     body, base = "B4/tip", "B1/base"
     gauges = {"G1-G3": Probe("scale", PLATFORM, pattern, base=base), "H1-H2": Probe("scale", body, pattern)}
     tight = {"G1-G3": Stop(PLATFORM, pattern, 1e-9, base=base), "H1-H2": Stop(body, pattern, 1e-9)}
@@ -104,8 +104,8 @@ def test_a_stop_out_of_reach_changes_nothing_bit_by_bit():
         far = replace(plain, stops={"end": Stop(PLATFORM, FACE, gap, gap)})
         both = [workspace(stage, ideal(stage), None) for stage in (plain, far)]
         for name in ("low", "high", "limiting"):
-            np.testing.assert_array_equal(*(getattr(item.single, name) for item in both))
-        np.testing.assert_array_equal(*(item.corner.ratio for item in both))
+            np.testing.assert_array_equal(*(getattr(item.single_axis, name) for item in both))
+        np.testing.assert_array_equal(*(item.worst_case.ratio for item in both))
         np.testing.assert_array_equal(*(item.polytope.vertices for item in both))
     far = replace(ONE, stops={"end": Stop(PLATFORM, FACE, 0.1 * mm)})
     assert [line.value for line in judge(far)] == [line.value for line in judge(ONE)]
@@ -115,7 +115,7 @@ def test_the_reachable_poses_end_at_a_stop_on_both_sides_of_a_corner():
     """Of a stage of two motions the poses beyond a gap across x are cut off: as much area as is beyond it."""
     stage = case("xy-stage")
     free = workspace(stage, ideal(stage), None)
-    gap = 0.5 * free.single.high[0]
+    gap = 0.5 * free.single_axis.high[0]
     stopped = replace(stage, stops={"end": Stop(PLATFORM, Pose(), gap)})
     cut = workspace(stopped, ideal(stopped), None)
     extent = free.polytope.extent.values
@@ -129,7 +129,7 @@ def test_the_reach_of_forces_ends_at_the_nearer_side_of_a_stop():
     per_newton = static_gain(lumped(free), ("platform.x",), ("motor",)).values.item()
     for gap, back, told in ((5 * um, None, 5 * um), (5 * um, 3 * um, 3 * um), (1.0, None, 20.0 * per_newton)):
         stage = replace(free, stops={"end": Stop(PLATFORM, FACE, gap, back)})
-        found = reach(stage, ideal(stage), lumped(stage))
+        found = force_workspace(stage, ideal(stage), lumped(stage))
         assert found.held.item() == pytest.approx(told, rel=1e-9)
         assert found.limited_by == (("stops/end",) if gap < 1.0 else ("motor maximum force",))
         assert found.bounds.at("x", "motor maximum force").item() == pytest.approx(20.0 * per_newton, rel=1e-12)
@@ -152,7 +152,7 @@ def test_stops_are_physics_and_stages_without_keep_their_digest():
 
 def test_a_carried_stage_brings_its_stops():
     """Turned by a quarter on another one its gap is along y, between the platform and the body that it stands on."""
-    fine = replace(ONE, stops={"E1-E2": Stop(PLATFORM, Polar(ARM, 0.0, Facing.OUTWARD), 5 * um)})
+    fine = replace(ONE, stops={"E1-E2": Stop(PLATFORM, Polar(ARM, 0.0, InstanceOrientation.OUTWARD), 5 * um)})
     coarse = mount(Mechanism("both", materials=ONE.materials), "z", ONE, platform=False)
     both = mount(coarse, "fine", fine, on="z/platform", pose=Pose((0.0, 0.0, 40 * mm), along=(0.0, 1.0, 0.0)))
     assert not check(both)

@@ -20,10 +20,10 @@ from flexstage.mechanism.store.patch import patch
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.amplified import Amplified
 from flexstage.parts.body import Block, Body, Imported, Inertia
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.freedom import ALL, Freedom
-from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.given import Given
+from flexstage.parts.gauge import Gauge, SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import solid_properties, within
 from flexstage.parts.material import Material
@@ -149,7 +149,7 @@ def test_a_guide_drawn_on_both_sides_is_one_side_and_its_image():
         "upper": Link((GROUND, "foot"), "leaf", (0.02, 0.07, 0.0), (0.1, -1.0, 0.0), (0.0, 0.0, 1.0)),
         "lower": Link(("foot", "lug"), "skewed", (0.025, 0.03, 0.0), (0.2, -1.0, 0.3), (1.0, 0.2, 0.0)),
     }
-    skewed = Given(SKEWED, (Freedom.RZ,))
+    skewed = ComplianceMatrix(SKEWED, (Freedom.RZ,))
     stage = Mechanism(
         "pair",
         materials={"metal": Material(2e11, 0.3, 7800.0)},
@@ -336,7 +336,7 @@ def strut(**place):
         bodies={PLATFORM: Body(mass=1.0, point=True)},
         links={"strut": Link((GROUND, PLATFORM), "wire", **place)},
         sensors={"gauge": Gauge(range=1e-4)},
-        gauges={"S": Probe("gauge", PLATFORM, Pose(along=(0.0, 0.0, 1.0)), Positive.OPENS)},
+        gauges={"S": Probe("gauge", PLATFORM, Pose(along=(0.0, 0.0, 1.0)), SensorSense.OPENS)},
     )
 
 

@@ -15,14 +15,14 @@ from flexstage.control.plant_models.electronics import Hardware
 from flexstage.control.plant_models.plants import Plant, plant
 from flexstage.control.robustness.stability import verdict
 from flexstage.control.robustness.stability_margins import peaks
-from flexstage.control.systems.closed import Cut, loop, open_at
+from flexstage.control.systems.closed import LoopBreak, loop, open_at
 from flexstage.control.tuning.attempt import Task, attempt
-from flexstage.control.tuning.goal import Goal, Kind
 from flexstage.control.tuning.judge import judge_loop
+from flexstage.control.tuning.spec import Kind, TuningSpec
 from flexstage.control.tuning.view import view
 from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import PLATFORM, Probe
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.spatial.frame import axes
 from tests.conftest import examples
 from tests.laws.shared import ideal, lumped
@@ -35,7 +35,7 @@ def plants(draw) -> tuple[Plant, Loops]:
     wires = draw(st.integers(0, 5))
     mechanism, lines, _ = draw(platforms(wires, 6 - wires + draw(st.integers(0, 1))))
     poses = [Pose(point, along, tuple(axes(tuple(map(float, along)))[:, 2].tolist())) for point, along in lines]
-    gauges = {f"S{number + 1}": Probe("gauge", PLATFORM, pose, Positive.OPENS) for number, pose in enumerate(poses)}
+    gauges = {f"S{number + 1}": Probe("gauge", PLATFORM, pose, SensorSense.OPENS) for number, pose in enumerate(poses)}
     stage = replace(mechanism, gauges=gauges)
     model, kinematics = lumped(stage), ideal(stage)
     found = modes(model)
@@ -56,7 +56,7 @@ def test_what_is_judged_reached_is_reached(case, kind, part):
     one, loops = case
     if kind is Kind.LQG:
         loops = platform_loops(one.coordinates)
-    asked, goal = part * float(one.frequencies[0]), Goal(None, 2.0, 0.0)
+    asked, goal = part * float(one.frequencies[0]), TuningSpec(None, 2.0, 0.0)
     noise = Disturbances(1e-9, dict.fromkeys(one.gauges, 1e-10))
     seen = view(one, loops, 0.0)
     found = attempt(seen, Task(kind, goal, expected=noise), asked)
@@ -69,7 +69,7 @@ def test_what_is_judged_reached_is_reached(case, kind, part):
     np.testing.assert_allclose([again.peak, *again.bandwidths], [found.judgement.peak, *found.judgement.bandwidths], rtol=1e-6)
     if not found.reaches(asked, goal):
         return
-    gains = open_at(closed, Cut.POSE).transfer(np.array([asked]))[0]
+    gains = open_at(closed, LoopBreak.POSE).transfer(np.array([asked]))[0]
     own = np.diag(loops.sense @ gains @ np.linalg.inv(loops.sense))
     np.testing.assert_allclose(np.abs(own), 1.0, rtol=0.01)
-    assert peaks(closed, Cut.POSE).sensitivity.value <= goal.sensitivity * 1.02
+    assert peaks(closed, LoopBreak.POSE).sensitivity.value <= goal.sensitivity * 1.02

@@ -128,6 +128,6 @@ def test_a_loaded_stage_is_the_same_in_other_units() -> None:
     assert before.loaded is not None
     assert abs(before.loaded.change) > 0.01
     assert require_same(before, after, UNITS) > 10
-    here, there = (fs.stance(stage, {"platform.x": 1e-3 * metre}) for stage, metre in ((one, 1.0), (other, UNITS["[length]"])))
+    here, there = (fs.operating_point(stage, {"platform.x": 1e-3 * metre}) for stage, metre in ((one, 1.0), (other, UNITS["[length]"])))
     assert require_same(here, there, UNITS) > 2
     require_same(fs.modes(here.linear), fs.modes(there.linear), UNITS)

@@ -168,11 +168,11 @@ def test_no_stroke_inside_the_box_stresses_more_than_its_corners(mechanism, seed
 def test_lines_of_force_and_stroke_cross(mechanism):
     model, kinematics = lumped(mechanism), ideal(mechanism)
     stacks = stack_lines(mechanism, model)
-    np.testing.assert_allclose(stacks.force, stacks.against * stacks.travel, rtol=1e-6, atol=1e-6 * np.max(stacks.blocking))
+    np.testing.assert_allclose(stacks.force, stacks.stage_stiffness * stacks.travel, rtol=1e-6, atol=1e-6 * np.max(stacks.blocking))
     np.testing.assert_allclose(
         stacks.force, stacks.stiffness * (stacks.free - stacks.travel), rtol=1e-6, atol=1e-6 * np.max(stacks.blocking)
     )
-    assert np.all(stacks.against > -1e-6 * stacks.stiffness)
+    assert np.all(stacks.stage_stiffness > -1e-6 * stacks.stiffness)
     lines = platform_lines(kinematics.mapping, model, stroke_limits(mechanism))
     np.testing.assert_allclose(lines.against(0.0), lines.travel)
     np.testing.assert_allclose(lines.against(lines.stiffness), 0.5 * lines.travel)

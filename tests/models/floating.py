@@ -6,10 +6,10 @@ from functools import cache
 
 from flexstage.base.units.scale import X, Y, Z, deg, mm, um
 from flexstage.cases.stock import ALUMINIUM, GAUGE, STEEL
-from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar, Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body, Inertia, Payload
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Straight
@@ -62,10 +62,10 @@ def floating() -> Mechanism:
         bodies={"platform": Body(solids={"plate": plate}, points={"corner": (30 * mm, 25 * mm, 6 * mm)}), "frame": frame},
         links={MOUNT: Link(("ground", "frame"), "rod", (0.0, 5 * mm, -40 * mm), Z)},
         units={"lift": _unit()},
-        placements={"B1-B3": Placement("lift", Polar(15 * mm, 20 * deg, Facing.TANGENT, 0.0))},
+        placements={"B1-B3": Placement("lift", Polar(15 * mm, 20 * deg, InstanceOrientation.TANGENT, 0.0))},
         payloads={"mirror": Payload("platform", 0.05, (5 * mm, 0.0, 10 * mm), Inertia(1e-6, 2e-6, 3e-6))},
         sensors={"probe": GAUGE},
-        gauges={"S": Probe("probe", "platform", Pose((10 * mm, 0.0, 0.0), along=Z, up=X), Positive.OPENS, base="frame")},
+        gauges={"S": Probe("probe", "platform", Pose((10 * mm, 0.0, 0.0), along=Z, up=X), SensorSense.OPENS, base="frame")},
     )
 
 

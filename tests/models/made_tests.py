@@ -62,6 +62,6 @@ def made(built: Mechanism, seed: int = 0, noise: Noise = Noise()) -> Identified:
         stabilisation=(),
         band=(20.0, 400.0),
         noise=np.ones(len(outputs)),
-        warnings=(),
+        data_warnings=(),
         provenance="made",
     )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.cautions import defaults
+from flexstage.analysis.caveats import defaults
 from flexstage.analysis.linear_statics.units import units
 from flexstage.analysis.trust import Trust
 from flexstage.base.finding import DesignError
@@ -86,7 +86,8 @@ def test_calibrated_hinges_grow_and_lose_energy_as_the_drawn_ones(stage: fs.Mech
     np.testing.assert_allclose(moved[1], moved[0], atol=1e-4 * np.abs(moved[0]).max())  # six digits of the file, over lever arms
     assert not [each for each in defaults(after) if "loss factor" in each.what]
     bare = replace(
-        after, parts={name: replace(part, replaces="") if isinstance(part, fs.Given) else part for name, part in after.parts.items()}
+        after,
+        parts={name: replace(part, replaces="") if isinstance(part, fs.ComplianceMatrix) else part for name, part in after.parts.items()},
     )
     assert len([each for each in defaults(bare) if "loss factor" in each.what]) == len(calibrated_parts(bare))
 
@@ -119,7 +120,7 @@ def test_a_root_yields_at_its_own_end() -> None:
     for name, side in (("back", -1.0), ("pivot", 1.0)):
         copy = "B1" if name == "back" else "B4"
         part = links[f"{copy}/{name}"].part
-        assert isinstance(part, fs.Given)
+        assert isinstance(part, fs.ComplianceMatrix)
         matrix = np.array(part.compliance)
         centre = matrix[1, 5] / matrix[5, 5]  # where a moment turns without shifting, seen from the centre
         assert centre == pytest.approx(side * 0.1 / 1.1 * 0.5 * span(expand(stage).links[f"{copy}/{name}"].part), rel=1e-6)

@@ -1,17 +1,17 @@
-"""What voice coils bear over a course: i^2 R of the simulated current, by the coil's own data, and a caution above what it is held at."""
+"""What voice coils bear over a course: i^2 R of the simulated current, by the coil's own data, and a warning above what it is held at."""
 
 import numpy as np
 import pytest
 
 from flexstage.cases.registry import case
-from flexstage.control.study.setup import ControllerSetup, LoopSetup, Motion, SineMotion
+from flexstage.control.study.setup import AxisAmplitudes, ControllerSetup, LoopSetup, SineMotion
 from flexstage.control.study.study import loop_study
 from flexstage.mechanism.assembly.expand import expand
 
 
 def test_heat_is_that_of_the_simulated_current():
     stage = case("voice-coil-stage")
-    path = SineMotion(frequency=20.0, periods=2.0, amplitude=Motion(x=50e-6))
+    path = SineMotion(frequency=20.0, periods=2.0, amplitude=AxisAmplitudes(x=50e-6))
     (run,) = loop_study(stage, LoopSetup(trajectory=path, controller=ControllerSetup(bandwidth=40.0))).runs
     assembly = expand(stage)
     for number, name in enumerate(assembly.thrusts):
@@ -20,4 +20,4 @@ def test_heat_is_that_of_the_simulated_current():
         assert found.power == (None if part.resistance is None else pytest.approx(found.rms**2 * part.resistance))
         told = part.resistance is not None and part.thermal_resistance is not None
         assert found.warming == (pytest.approx(found.power * part.thermal_resistance) if told else None)
-        assert any("for ever" in each.what for each in run.cautions) is (found.held is not None and found.rms > found.held)
+        assert any("for ever" in each.what for each in run.warnings) is (found.held is not None and found.rms > found.held)

@@ -85,7 +85,7 @@ def test_repeated_modes_are_one_plane(compared: Compared) -> None:
         assert group.seen == 2
         assert (group.angle or 0.0) < np.deg2rad(3.0)
     assert compared.further == ()
-    assert compared.warnings == ()
+    assert compared.data_warnings == ()
 
 
 def test_shapes_turned_by_an_angle_have_its_squared_cosine(experiment: Identified) -> None:
@@ -134,7 +134,7 @@ def test_a_gauge_the_wrong_way_round_shows(record: Record) -> None:
     values[:, record.names.index("S4")] *= -1.0
     again = compare(STAGE, identified(replace(record, samples=InMemory(values))))
     assert min(row.assurance or 0.0 for row in again.modes) < 0.9
-    assert any("assurance" in text or "not found" in text for text in again.warnings)
+    assert any("assurance" in text or "not found" in text for text in again.data_warnings)
 
 
 def test_fea_stands_beside_them(experiment: Identified, compared: Compared) -> None:
@@ -151,8 +151,8 @@ def test_fea_stands_beside_them(experiment: Identified, compared: Compared) -> N
 def test_one_actuator_shows_one_of_a_pair() -> None:
     # The two tilts of this stage are driven by the vertical units alike: one alone drives one combination.
     found = compare(STAGE, identified(stage_record(BUILT, active=(3,))))
-    assert any("only B4 was driven" in text for text in found.warnings)
-    assert any("repeated" in text or "not found" in text for text in found.warnings)
+    assert any("only B4 was driven" in text for text in found.data_warnings)
+    assert any("repeated" in text or "not found" in text for text in found.data_warnings)
 
 
 def test_a_record_of_one_actuator_takes_no_local_mode_for_a_platform_mode() -> None:
@@ -170,7 +170,7 @@ def test_a_record_of_one_actuator_takes_no_local_mode_for_a_platform_mode() -> N
 def test_too_few_gauges_are_told(record: Record) -> None:
     few = identified(record.select(["B1", "B2", "B3", "B4", "B5", "B6", "S4", "S5", "S6"]))
     found = compare(STAGE, few)
-    assert any("3 sensors" in text for text in found.warnings)
+    assert any("3 sensors" in text for text in found.data_warnings)
     assert "3 of the 6 motions" in stage_shapes(ideal(STAGE), few).missing
 
 
@@ -228,8 +228,8 @@ def test_noise_alone_is_compared_with_nothing() -> None:
     noise = np.random.default_rng(5).standard_normal(silent.values.shape)
     found = compare(STAGE, identified(in_memory(silent.channels, silent.rate, noise)))
     assert all(row.experiment is None for row in found.modes)
-    assert any("no mode stands out" in text for text in found.warnings)
-    assert any("not found in the experiment: 1 (tilt" in text for text in found.warnings)
+    assert any("no mode stands out" in text for text in found.data_warnings)
+    assert any("not found in the experiment: 1 (tilt" in text for text in found.data_warnings)
 
 
 def test_shapes_move_the_platform_as_the_model_does(experiment: Identified) -> None:
@@ -301,7 +301,7 @@ def test_channels_that_are_not_what_they_are_called_are_named(told: str) -> None
     found = compare(STAGE, MISNAMED[told])
     wanted = "look exchanged: " if told.startswith("B4, ") else told
     assert [each for each in found.misnamed if wanted in each], found.misnamed
-    assert any(wanted in each for each in found.warnings)
+    assert any(wanted in each for each in found.data_warnings)
 
 
 def test_outputs_and_inputs_are_named_together_each_as_if_the_others_were_right() -> None:

@@ -11,8 +11,8 @@ from flexstage.base.finding import Finding
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Block, Body, Cylinder, Solid
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck

@@ -10,7 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.base.finding import DesignError
 from flexstage.beams.quadrature import stations
-from flexstage.parts.given import Joint
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck

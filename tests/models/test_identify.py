@@ -108,7 +108,7 @@ def test_pure_noise_gives_no_mode_and_says_so():
     for seed in range(SEEDS if FULL else 1):
         found = identify(_noise(seed))
         assert len(found.frequencies) == 0
-        assert "no mode stands out of the noise" in found.warnings[0]
+        assert "no mode stands out of the noise" in found.data_warnings[0]
 
 
 def test_six_single_actuator_records_give_the_modes_of_all_at_once():
@@ -129,7 +129,7 @@ def test_one_input_shows_one_combination_of_a_repeated_pair_and_the_result_says_
     known = replace(known, damping=np.array([0.012, 0.012, 0.016, 0.014, 0.014, 0.01]))
     single, every = (identify(record(known, 1, active=only, seconds=60.0)) for only in ((0,), None))
     assert len(single.frequencies) == 4
-    assert any("only u1 was driven" in warning and "one combination" in warning for warning in single.warnings)
+    assert any("only u1 was driven" in warning and "one combination" in warning for warning in single.data_warnings)
     assert len(every.frequencies) == 6
     assert every.close == ((0, 1), (3, 4))
     combination = known.shapes[:, :2] @ known.participation[:2, 0]
@@ -215,7 +215,7 @@ def test_trials_fail_when_modes_are_wrong():
 def test_a_motion_taken_as_input_is_told(unit: str, told: bool) -> None:
     plain = one_mode_record()
     driven = replace(plain, channels=tuple(replace(each, unit=unit) if each.role is Role.INPUT else each for each in plain.channels))
-    assert any("taken as input, and a motion: u" in warning for warning in identify(driven).warnings) is told
+    assert any("taken as input, and a motion: u" in warning for warning in identify(driven).data_warnings) is told
 
 
 # --- what is left near a mode ---
@@ -242,7 +242,7 @@ def blow(hardening: float, noise: float = 1e-4, seed: int = 0) -> tuple[Record, 
 def test_a_mode_that_does_not_hold_still_has_intervals_that_agree_both_ways(seed: int) -> None:
     """The fits leave more than noise near it, each otherwise: intervals of noise alone exclude one another."""
     both = [identify(each) for each in blow(0.00015, 1e-3, seed)]
-    assert any("systematic residual near" in warning for each in both for warning in each.warnings)
+    assert any("systematic residual near" in warning for each in both for warning in each.data_warnings)
     (low, high), (least, most) = (each.frequency_intervals[0] for each in both)
     assert max(low, least) < min(high, most)
 
@@ -250,7 +250,7 @@ def test_a_mode_that_does_not_hold_still_has_intervals_that_agree_both_ways(seed
 def test_a_linear_mode_leaves_noise_alone() -> None:
     """Once in 1000 each."""
     found = [identify(blow(0.0, 1e-3, seed)[1]) for seed in range(8)]
-    assert not [warning for each in found for warning in each.warnings if "systematic" in warning]
+    assert not [warning for each in found for warning in each.data_warnings if "systematic" in warning]
 
 
 def test_intervals_of_a_linear_mode_hold_the_truth() -> None:

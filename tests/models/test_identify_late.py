@@ -101,7 +101,7 @@ def test_a_channel_that_comes_later_than_the_others_is_named(side: str, number: 
     chosen = turned[:, number] if side == "outputs" else turned[:, :, number]
     chosen *= np.exp(-2j * np.pi * lines * seconds)[:, None]
     found = identify(replace(made, values=turned))
-    told = [each for each in found.warnings if "looks" in each]
+    told = [each for each in found.data_warnings if "looks" in each]
     if not seconds:
         assert told == []
         return
@@ -130,12 +130,12 @@ def test_modes_in_whole_ratios_show_no_delay_where_there_is_none(frequencies: tu
     found = identify(beam(frequencies, order))
     assert len(found.frequencies) == len(frequencies)
     assert found.delay == 0.0
-    assert not any("looks" in each for each in found.warnings)
+    assert not any("looks" in each for each in found.data_warnings)
 
 
 @pytest.mark.parametrize(("channel", "seconds", "text"), [(2, 2e-3, "y2 looks late by 2 ms"), (4, -1.5e-3, "y4 looks early by 1.5 ms")])
 def test_a_late_channel_is_named_where_modes_are_in_whole_ratios(channel: int, seconds: float, text: str) -> None:
-    found = [each for each in identify(beam((48.0, 144.0, 240.0), 2, seconds, channel)).warnings if "looks" in each]
+    found = [each for each in identify(beam((48.0, 144.0, 240.0), 2, seconds, channel)).data_warnings if "looks" in each]
     assert len(found) == 1
     assert found[0].startswith(text)
 
@@ -147,7 +147,7 @@ def test_a_common_delay_of_accelerations_is_that_of_the_truth() -> None:
 
 def test_a_channel_that_hardly_moves_in_a_mode_is_not_called_late_by_it() -> None:
     """The phase of little is noise: a whole period of another mode would have explained it."""
-    assert not any("looks" in each for each in identify(record(truth(seed=1006), 6, seconds=7.2)).warnings)
+    assert not any("looks" in each for each in identify(record(truth(seed=1006), 6, seconds=7.2)).data_warnings)
 
 
 @pytest.mark.parametrize("noise", [2e-3, 2e-2])

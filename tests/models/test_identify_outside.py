@@ -126,7 +126,7 @@ def test_a_drive_that_is_not_recorded_gives_no_mode_and_hides_none(seed: int) ->
     assert np.all(np.abs(found.frequencies - known.frequencies) < 5.0 * found.frequency_deviations)
     assert not [peak for peak in found.peaks if peak.doubt in (Doubt.UNDRIVEN, Doubt.WEAK)]
     assert not found.delay
-    assert not [each for each in found.warnings if "looks" in each]
+    assert not [each for each in found.data_warnings if "looks" in each]
 
 
 @pytest.mark.full
@@ -152,5 +152,5 @@ def test_a_mode_that_is_hardly_driven_by_inputs_is_listed() -> None:
 def test_forces_that_are_not_recorded_are_told_where_they_exceed_the_recorded_ones() -> None:
     known = truth(seed=1002)
     strong, weak = (identify(undriven(known, 2, level)) for level in (4.0, 0.5))
-    assert any("less than half of the motion" in each for each in strong.warnings)
-    assert not any("less than half of the motion" in each for each in weak.warnings)
+    assert any("less than half of the motion" in each for each in strong.data_warnings)
+    assert not any("less than half of the motion" in each for each in weak.data_warnings)

@@ -16,7 +16,7 @@ from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import identification, usable_measurement
-from flexstage.experiment.records.health import Needs
+from flexstage.experiment.records.health import RecordRequirements
 from flexstage.experiment.records.record import Channel, InMemory, Record, Role
 from flexstage.models.linear.frequency import superpose
 from flexstage.models.linear.port import ports
@@ -67,7 +67,7 @@ def test_modes_of_a_shaken_floor_are_those_of_the_truth_a_pair_too() -> None:
     assert np.all(np.abs(away) <= 5.0 * found.shape_deviations[:, 2] + 1e-12)
     assert found.inputs == ()
     assert found.participation.shape == (3, 0)
-    assert any("mass-normalised shapes are unknown" in each for each in found.warnings)
+    assert any("mass-normalised shapes are unknown" in each for each in found.data_warnings)
 
 
 def test_noise_alone_has_no_mode() -> None:
@@ -99,10 +99,10 @@ def test_two_free_decays_tell_both_modes_of_a_pair_and_one_says_that_there_may_b
     assert both.frequencies.round(0).tolist() == [118.0, 118.0, 231.0]
     assert np.max(np.abs(errors(both, PAIR))) < 4.5
     np.testing.assert_allclose(both.frequencies, PAIR.frequencies, rtol=1e-4)
-    assert any("outputs are largest: 0.1" in each for each in both.warnings)
+    assert any("outputs are largest: 0.1" in each for each in both.data_warnings)
     one = identification((free(truth((118.0, 166.0, 231.0), outputs=3, inputs=3), 0),), DECAY).found
     assert one.frequencies.round(0).tolist() == [118.0, 166.0, 231.0]
-    assert any("only decay 1 was driven" in each for each in one.warnings)
+    assert any("only decay 1 was driven" in each for each in one.data_warnings)
 
 
 def test_what_moved_the_stage_is_never_guessed() -> None:
@@ -111,7 +111,7 @@ def test_what_moved_the_stage_is_never_guessed() -> None:
         usable_measurement([made])
     driven = Record((Channel("u", "um", Role.INPUT), *made.channels[1:]), made.rate, made.samples)
     with pytest.raises(DesignError, match="u: taken for inputs, where none is said to have been recorded"):
-        usable_measurement([driven], needs=Needs(unrecorded=True))
+        usable_measurement([driven], requirements=RecordRequirements(unrecorded=True))
     with pytest.raises(DesignError, match="there are 2 records"):
         identification((made, made), FLOOR)
     with pytest.raises(DesignError, match="40 blocks of 400 are needed"):

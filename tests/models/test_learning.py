@@ -19,13 +19,13 @@ from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
 from flexstage.control.study.setup import (
+    AxisAmplitudes,
     ControllerSetup,
     DampingSetup,
     FileMotion,
     FollowSetup,
     GaugeSetup,
     LoopSetup,
-    Motion,
     RasterMotion,
     SineMotion,
     StepMotion,
@@ -120,7 +120,7 @@ def test_the_shipped_stage_learns_a_raster_along_z(damping):
 
 def test_what_is_commanded_is_a_trajectory_for_others(tmp_path):
     """The path of the inverse, written and read as a trajectory, moves the platform as it did where it was found."""
-    path = SineMotion(frequency=20.0, amplitude=Motion(x=3e-6), periods=1)
+    path = SineMotion(frequency=20.0, amplitude=AxisAmplitudes(x=3e-6), periods=1)
     given = {"gauges": GaugeSetup(noise=0.0, resolution=0.0), "controller": ControllerSetup(bandwidth=100.0)}
     resolved, control, closed = closed_of("parallelogram", trajectory=path, follow=FollowSetup(Following.INVERSE), **given)
     (found,) = runs(resolved, control, closed)
@@ -155,7 +155,7 @@ def test_noise_that_begins_at_once_is_faded():
 
 
 def test_the_inverse_leaves_nothing_of_a_slow_path():
-    path = SineMotion(frequency=20.0, amplitude=Motion(x=3e-6))
+    path = SineMotion(frequency=20.0, amplitude=AxisAmplitudes(x=3e-6))
     quiet = GaugeSetup(resolution=0.0)
     plain, inverted = (
         runs(*closed_of("parallelogram", trajectory=path, gauges=quiet, follow=follow))[0].tracking.at("x", "true rms")
@@ -177,7 +177,7 @@ def test_gauges_of_a_first_order_show_the_true_path_late():
 
 
 def test_a_shaped_step_rings_less():
-    given = {"controller": ControllerSetup(integral=900.0), "trajectory": StepMotion(amplitude=Motion(x=1e-6))}
+    given = {"controller": ControllerSetup(integral=900.0), "trajectory": StepMotion(amplitude=AxisAmplitudes(x=1e-6))}
     resolved, control, closed = closed_of("parallelogram", **given)
     poles = closed.system.poles
     rates = np.log(poles[np.abs(poles) > 1e-6].astype(complex)) * resolved.rate

@@ -12,7 +12,7 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.noise import noise_budget
-from flexstage.control.plant_models.electronics import hardware
+from flexstage.control.plant_models.electronics import sampling_chain
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.robustness.measured_margins import MeasuredMargins, measured_margins
 from flexstage.control.robustness.stability_margins import bandwidths, peaks
@@ -23,17 +23,17 @@ from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import on_test, resolve
 from flexstage.control.study.runs import runs
 from flexstage.control.study.setup import (
+    AxisAmplitudes,
     ControllerSetup,
     Floor,
     FollowSetup,
     GaugeSetup,
     LoopSetup,
-    Motion,
     SineMotion,
     VibrationSetup,
 )
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.control.systems.closed import Cut, loop
+from flexstage.control.systems.closed import LoopBreak, loop
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.pipeline import Identification, identification
 from flexstage.experiment.records.record import Channel, Responses, Role
@@ -64,7 +64,7 @@ def swept(stage: Mechanism, lines: np.ndarray, late: float, *, faster: float = 1
     gauges = [each.name for each in model.outputs if "." not in each.name]
     assert model.damping is not None
     exact = superpose(model, ports(model, gauges, model.strokes), lines / faster, model.damping)
-    lags = np.array([hardware(stage).sensors[name].bandwidth for name in gauges])
+    lags = np.array([sampling_chain(stage).sensors[name].bandwidth for name in gauges])
     exact = exact * np.exp(-2j * np.pi * lines * late)[:, None, None] / (1.0 + 1j * lines[:, None] / lags)[:, :, None]
     draw = np.random.default_rng(2).standard_normal((2, *exact.shape))
     values = exact * (1.0 + noise * np.sqrt(0.5) * (draw[0] + 1j * draw[1]))
@@ -78,7 +78,7 @@ def on_truth(truth: Plant, designed: LoopStudy, right: LoopStudy) -> None:
     """The loop designed on the test, on the truth, beside the one designed on that: the figures that are promised."""
     closed = loop(truth, designed.controller.system)
     assert closed.system.growth < 0.0
-    assert peaks(closed, Cut.POSE).sensitivity.value < 2.1
+    assert peaks(closed, LoopBreak.POSE).sensitivity.value < 2.1
     assert right.bandwidths is not None
     np.testing.assert_allclose(bandwidths(closed).rejection, right.bandwidths.rejection, rtol=0.05)
     outputs = tuple(f"relative.{name}" for name in truth.coordinates.names)
@@ -115,7 +115,7 @@ def test_a_loop_designed_on_a_record_with_delay_is_the_one_of_the_truth() -> Non
 
 def test_the_inverse_of_what_a_test_found_is_that_of_the_truth() -> None:
     """A sine of 60 Hz below a bandwidth of 100 Hz: what is left of its error is the gauge's own lag, which is told with the motion."""
-    path, quiet = SineMotion(frequency=60.0, amplitude=Motion(x=3e-6), periods=2), GaugeSetup(noise=0.0, resolution=0.0)
+    path, quiet = SineMotion(frequency=60.0, amplitude=AxisAmplitudes(x=3e-6), periods=2), GaugeSetup(noise=0.0, resolution=0.0)
     asked = LoopSetup(trajectory=path, gauges=quiet, controller=ControllerSetup(bandwidth=100.0), follow=FollowSetup(Following.INVERSE))
     given = on_test(resolve(parallelogram(), asked), recorded().found)
     control = make_controller(given, given.plant.coordinates.strokes)

@@ -14,8 +14,8 @@ from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.mechanism.geometry.pieces import SAGITTA, pieces
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Solid, Sphere
-from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.given import Joint
+from flexstage.parts.compliance_matrix import Joint
+from flexstage.parts.gauge import Gauge, SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -255,7 +255,7 @@ def test_a_solid_within_another_one_clashes_for_both(buried: float) -> None:
     ],
 )
 def test_a_gauge_beside_its_target_is_told(at: tuple[float, float, float], said: str | None) -> None:
-    gauge = Probe("probe", "platform", Pose(at, along=(1.0, 0.0, 0.0)), Positive.OPENS)
+    gauge = Probe("probe", "platform", Pose(at, along=(1.0, 0.0, 0.0)), SensorSense.OPENS)
     found = contact_findings(replace(stage({"block": BLOCK}), sensors={"probe": Gauge(1e-4)}, gauges={"S": gauge}))
     assert [said is not None and said in each.what for each in found] == ([] if said is None else [True])
 

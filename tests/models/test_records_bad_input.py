@@ -17,7 +17,7 @@ from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.health import examine
-from flexstage.experiment.records.options import Allow, Arrays, Kind, Options
+from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options
 from flexstage.experiment.records.record import Channel, Record, Responses, in_memory
 from tests.conftest import FULL
 from tests.roundtrip.records import awkward_responses, write_version_73
@@ -38,8 +38,8 @@ def refusal(path: Path, options: Options | None = None) -> str:
     return str(refused.value)
 
 
-def allowing(*allowed: Allow) -> Options:
-    return Options(allow=frozenset(allowed))
+def allowing(*allowed: FaultTolerance) -> Options:
+    return Options(accept_faults=frozenset(allowed))
 
 
 def plain(path: Path, form: str) -> Path:
@@ -111,7 +111,7 @@ def test_a_file_that_breaks_off_is_used_only_when_allowed(form: str, suffix: str
     told = refusal(path)
     assert "breaks off" in told
     assert '"truncated"' in told
-    found = kept(path, allowing(Allow.TRUNCATED))
+    found = kept(path, allowing(FaultTolerance.TRUNCATED))
     assert 150 < len(found) < 400
     np.testing.assert_allclose(found, VALUES[: len(found)], rtol=1e-11)
 
@@ -126,7 +126,7 @@ def test_a_file_cut_anywhere_is_refused_or_whole(form: str, tmp_path: Path) -> N
     whole = path.read_bytes()
     for cut in np.linspace(0, len(whole) - 1, 97).astype(int):
         path.write_bytes(whole[:cut])
-        for options in (Options(), allowing(Allow.TRUNCATED)):
+        for options in (Options(), allowing(FaultTolerance.TRUNCATED)):
             try:
                 found = read(path, options)
                 assert isinstance(found, Record)
@@ -169,7 +169,7 @@ def test_a_table_cut_within_its_last_number_is_told(tmp_path: Path) -> None:
     path = plain(tmp_path / "a.csv", "csv")
     path.write_bytes(path.read_bytes()[:-4])
     assert "breaks off" in refusal(path)
-    np.testing.assert_array_equal(kept(path, allowing(Allow.TRUNCATED)), VALUES[:-1])
+    np.testing.assert_array_equal(kept(path, allowing(FaultTolerance.TRUNCATED)), VALUES[:-1])
 
 
 def test_hdf_that_breaks_off_says_how_far_it_goes(tmp_path: Path) -> None:
@@ -235,7 +235,7 @@ def test_a_gap_divides_the_record(suffix: str, tmp_path: Path) -> None:
     told = refusal(path, named)
     assert "1 gap between samples, before 1.7 s" in told
     assert "280 samples (2.8 s)" in told
-    found = read(path, replace(named, allow=frozenset({Allow.GAPS})))
+    found = read(path, replace(named, accept_faults=frozenset({FaultTolerance.GAPS})))
     assert isinstance(found, Record)
     assert (found.rate, round(found.start, 9)) == (RATE, 1.7)
     np.testing.assert_array_equal(found.select(["u1", "S1"]).values, VALUES[120:])
@@ -386,7 +386,7 @@ def test_a_channel_without_samples_is_refused_whatever_is_allowed(tmp_path: Path
     first = whole.index(np.ascontiguousarray(VALUES[:, 0]).tobytes())
     path.write_bytes(whole[:first] + whole[first + size :])
     assert "it breaks off" in refusal(path)
-    assert "one of its channels has no samples" in refusal(path, allowing(Allow.TRUNCATED))
+    assert "one of its channels has no samples" in refusal(path, allowing(FaultTolerance.TRUNCATED))
 
 
 # --- responses ---
@@ -469,7 +469,7 @@ def test_a_file_damaged_anywhere_is_refused_or_read(form: str, kind: type, tmp_p
     whole, draw = path.read_bytes(), np.random.default_rng(list(FORMS).index(form))
     for _ in range(1000 if FULL else 30):
         path.write_bytes(damaged(whole, draw))
-        for options in (Options(), Options(allow=frozenset(Allow), rate=50.0)):
+        for options in (Options(), Options(accept_faults=frozenset(FaultTolerance), rate=50.0)):
             with contextlib.suppress(DesignError):
                 found = read(path, options)
                 if isinstance(found, Record):
@@ -545,7 +545,7 @@ def test_gcs_arrays_are_read_as_their_header_says(separator: int, end: str, tmp_
     assert [each.name for each in found.inputs] == ["Target Position of Axis AXIS:1"]
     assert [each.name for each in found.outputs] == ["Actual Position of Axis AXIS:1"]
     np.testing.assert_array_equal(found.values, ROWS)
-    assert Allow.UNITS in [fault.kind for fault in examine(found).faults]  # the header states none: they are the user's to say
+    assert FaultTolerance.UNITS in [fault.kind for fault in examine(found).faults]  # the header states none: they are the user's to say
 
 
 def test_bad_gcs_arrays_are_told(tmp_path: Path) -> None:
@@ -559,7 +559,7 @@ def test_bad_gcs_arrays_are_told(tmp_path: Path) -> None:
         ("SEPARATOR = 32", "SEPARATOR = 7"): "the code of no sign",
     }.items():
         assert told in refusal(gcs(path, change=change)), change
-    assert len(kept(gcs(path, change=("NDATA = 3", "NDATA = 4")), allowing(Allow.TRUNCATED))) == 2
+    assert len(kept(gcs(path, change=("NDATA = 3", "NDATA = 4")), allowing(FaultTolerance.TRUNCATED))) == 2
     assert read(gcs(path, change=("# SAMPLE_TIME = 0.000200", "#")), Options(rate=10.0)).rate == 10.0  # type: ignore[union-attr]
     twice = GCS.format(separator=32) + "1 2\n3 4\n"
     assert "line 17: it has" in refusal(gcs(path, change=("# REM C-867", twice)))

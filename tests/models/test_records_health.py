@@ -11,8 +11,8 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.pipeline import usable_measurement as sound_records
-from flexstage.experiment.records.health import Needs, examine, responses_findings, usable_record
-from flexstage.experiment.records.options import Allow
+from flexstage.experiment.records.health import RecordRequirements, examine, responses_findings, usable_record
+from flexstage.experiment.records.options import FaultTolerance
 from flexstage.experiment.records.record import Channel, Record, Responses, Role, in_memory
 from tests.conftest import FULL
 
@@ -21,7 +21,9 @@ CHANNELS = (
     *(Channel(f"u{number}", "V", Role.INPUT) for number in (1, 2, 3)),
     *(Channel(f"S{number}", "um", Role.OUTPUT) for number in (1, 2, 3)),
 )
-STAGE = Needs(inputs=tuple((f"u{number}", "V") for number in (1, 2, 3)), outputs=tuple((f"S{number}", "m") for number in (1, 2, 3)))
+STAGE = RecordRequirements(
+    inputs=tuple((f"u{number}", "V") for number in (1, 2, 3)), outputs=tuple((f"S{number}", "m") for number in (1, 2, 3))
+)
 
 
 def sound(seed: int = 0) -> np.ndarray:
@@ -85,17 +87,17 @@ def delayed(values: np.ndarray) -> None:
 
 
 PLANTED = {
-    zero: (Allow.DEAD, "S2", "it is zero throughout"),
-    constant: (Allow.DEAD, "S2", "it is constant at 2.5 um"),
-    pulled: (Allow.DEAD, "S2", "it stands still from 2.92969 s to 4 s, 2192 of 8192 samples"),
-    faint: (Allow.DEAD, "S2", "its rms is 1.51e-06 um, that of the others of its kind 1.51 um"),
-    nothing_but_nan: (Allow.DEAD, "S2", "8092 of 8192 samples are not numbers, the first at 0.0488281 s"),
-    clipped: (Allow.CLIPPED, "S2", "it is clipped: "),
-    clipped_below: (Allow.CLIPPED, "S2", "least value, -4 um"),
-    coarse: (Allow.CLIPPED, "S2", "levels between"),
-    broken: (Allow.GAPS, "S2", "2 of 8192 samples are not numbers, the first at 1 s"),
-    dependent: (Allow.DEPENDENT, "u3", "100 % of it is explained by the other inputs, u1, u2"),
-    delayed: (Allow.DEPENDENT, "u3", "of it is explained by the other inputs, u1, u2"),
+    zero: (FaultTolerance.DEAD, "S2", "it is zero throughout"),
+    constant: (FaultTolerance.DEAD, "S2", "it is constant at 2.5 um"),
+    pulled: (FaultTolerance.DEAD, "S2", "it stands still from 2.92969 s to 4 s, 2192 of 8192 samples"),
+    faint: (FaultTolerance.DEAD, "S2", "its rms is 1.51e-06 um, that of the others of its kind 1.51 um"),
+    nothing_but_nan: (FaultTolerance.DEAD, "S2", "8092 of 8192 samples are not numbers, the first at 0.0488281 s"),
+    clipped: (FaultTolerance.CLIPPED, "S2", "it is clipped: "),
+    clipped_below: (FaultTolerance.CLIPPED, "S2", "least value, -4 um"),
+    coarse: (FaultTolerance.CLIPPED, "S2", "levels between"),
+    broken: (FaultTolerance.GAPS, "S2", "2 of 8192 samples are not numbers, the first at 1 s"),
+    dependent: (FaultTolerance.DEPENDENT, "u3", "100 % of it is explained by the other inputs, u1, u2"),
+    delayed: (FaultTolerance.DEPENDENT, "u3", "of it is explained by the other inputs, u1, u2"),
 }
 
 
@@ -114,9 +116,9 @@ def test_a_fault_is_cured_only_when_allowed(plant: Callable[[np.ndarray], None])
     kind, name, _ = PLANTED[plant]
     whole = planted(plant)
     with pytest.raises(DesignError):
-        usable_record(whole, frozenset(Allow) - {kind})
+        usable_record(whole, frozenset(FaultTolerance) - {kind})
     left = usable_record(whole, frozenset({kind}))
-    assert (name in left.names) == (kind in (Allow.CLIPPED, Allow.GAPS))
+    assert (name in left.names) == (kind in (FaultTolerance.CLIPPED, FaultTolerance.GAPS))
     assert np.isfinite(left.values).all()
     if plant is broken:
         assert (left.start, left.length) == (5001 / RATE, 8192 - 5001)
@@ -128,7 +130,7 @@ def test_a_fault_is_cured_only_when_allowed(plant: Callable[[np.ndarray], None])
 def test_sound_records_are_left_as_they_are() -> None:
     for seed in range(20 if FULL else 6):
         whole = record(sound(seed))
-        assert usable_record(whole, frozenset(Allow), STAGE) is whole
+        assert usable_record(whole, frozenset(FaultTolerance), STAGE) is whole
 
 
 def test_signals_that_look_odd_but_are_sound() -> None:
@@ -152,24 +154,32 @@ def test_all_faults_are_told_at_once() -> None:
     channels = (*CHANNELS[:5], Channel("S3", "furlong", Role.OUTPUT))
     whole = replace(planted(all_of_them), channels=channels)
     with pytest.raises(DesignError) as refused:
-        usable_record(whole, needs=Needs(resolution=0.1, highest=1500.0))
-    kinds = {fault.kind for fault in examine(whole, Needs(resolution=0.1, highest=1500.0)).faults}
-    assert kinds == {Allow.DEAD, Allow.CLIPPED, Allow.GAPS, Allow.DEPENDENT, Allow.UNITS, Allow.SHORT, Allow.SLOW}
+        usable_record(whole, requirements=RecordRequirements(resolution=0.1, highest=1500.0))
+    kinds = {fault.kind for fault in examine(whole, RecordRequirements(resolution=0.1, highest=1500.0)).faults}
+    assert kinds == {
+        FaultTolerance.DEAD,
+        FaultTolerance.CLIPPED,
+        FaultTolerance.GAPS,
+        FaultTolerance.DEPENDENT,
+        FaultTolerance.UNITS,
+        FaultTolerance.SHORT,
+        FaultTolerance.SLOW,
+    }
     assert len(refused.value.findings) == 7
-    left = usable_record(whole, frozenset(kinds), Needs(resolution=0.1, highest=1500.0))
+    left = usable_record(whole, frozenset(kinds), RecordRequirements(resolution=0.1, highest=1500.0))
     assert left.names == ("u1", "u2", "S2", "S3")
 
 
 def test_a_dead_channel_that_is_left_out_takes_its_gaps_along() -> None:
     whole = planted(nothing_but_nan)
-    assert usable_record(whole, frozenset({Allow.DEAD})).length == LENGTH
+    assert usable_record(whole, frozenset({FaultTolerance.DEAD})).length == LENGTH
 
 
 def test_units_that_are_missing_or_unknown() -> None:
     channels = (*CHANNELS[:4], Channel("S2", "", Role.OUTPUT), Channel("S3", "furlong", Role.OUTPUT))
     findings = examine(record(sound(), channels)).findings
     assert [finding.what for finding in findings] == ["no unit is stated", '"furlong" is not a known unit']
-    assert usable_record(record(sound(), channels), frozenset({Allow.UNITS})).names == CHANNELS_NAMES
+    assert usable_record(record(sound(), channels), frozenset({FaultTolerance.UNITS})).names == CHANNELS_NAMES
 
 
 def test_what_is_wrong_with_all_channels_is_told_once() -> None:
@@ -189,33 +199,33 @@ def test_names_and_units_are_held_against_the_stage() -> None:
     whole = record(sound(), channels)
     faults = examine(whole, STAGE).faults
     assert [(fault.kind, fault.finding.what) for fault in faults] == [
-        (Allow.NAMES, "the stage has no output of this name"),
-        (Allow.UNITS, "its unit is V, that of the stage's output m"),
+        (FaultTolerance.NAMES, "the stage has no output of this name"),
+        (FaultTolerance.UNITS, "its unit is V, that of the stage's output m"),
     ]
-    assert usable_record(whole, frozenset({Allow.NAMES, Allow.UNITS}), STAGE).names == ("u1", "u2", "u3", "S1", "S3")
+    assert usable_record(whole, frozenset({FaultTolerance.NAMES, FaultTolerance.UNITS}), STAGE).names == ("u1", "u2", "u3", "S1", "S3")
 
 
 def test_roles_must_be_known() -> None:
     channels = (*CHANNELS[:3], *CHANNELS[3:5], Channel("spare", "V"))
     whole = record(sound(), channels)
-    assert [fault.kind for fault in examine(whole).faults] == [Allow.NAMES]
-    assert usable_record(whole, frozenset({Allow.NAMES})).names == CHANNELS_NAMES[:5]
+    assert [fault.kind for fault in examine(whole).faults] == [FaultTolerance.NAMES]
+    assert usable_record(whole, frozenset({FaultTolerance.NAMES})).names == CHANNELS_NAMES[:5]
     outputs = whole.select(("S1", "S2"))
     with pytest.raises(DesignError, match=r"none of its channels .* is an input"):
-        usable_record(outputs, frozenset(Allow))
+        usable_record(outputs, frozenset(FaultTolerance))
 
 
 def test_nothing_is_left_out_until_nothing_is_left() -> None:
     whole = planted(zero).select(("u1", "S2"))
     with pytest.raises(DesignError, match=r"none of its channels .* is an output"):
-        usable_record(whole, frozenset({Allow.DEAD}))
+        usable_record(whole, frozenset({FaultTolerance.DEAD}))
 
 
 def test_too_short_and_too_slow() -> None:
     whole = record(sound())
-    assert examine(whole, Needs(resolution=2.0, averages=8, highest=1023.0)).findings == ()
-    short, slow = (fault for fault in examine(whole, Needs(resolution=1.9, averages=8, highest=1024.0)).faults)
-    assert "4 s give 7.6 averages at a resolution of 1.9 Hz, 8 are asked for" in short.finding.what
+    assert examine(whole, RecordRequirements(resolution=2.0, averages=8, highest=1023.0)).findings == ()
+    short, slow = (fault for fault in examine(whole, RecordRequirements(resolution=1.9, averages=8, highest=1024.0)).faults)
+    assert "4 s give 7.6 averages at a resolution of 1.9 Hz, 8 are required" in short.finding.what
     assert "sampled at 2048 Hz, less than twice the highest mode at 1024 Hz" in slow.finding.what
     assert "2621 Hz or more" in slow.finding.advice
 
@@ -225,7 +235,7 @@ def test_stored_responses_are_examined() -> None:
     found = Responses(lines, CHANNELS[3:], CHANNELS[:3], np.ones((101, 3, 3), complex), np.full((101, 3, 3), 0.9), source="frf.mat")
     assert responses_findings(found, replace(STAGE, highest=150.0)) == []
     wrong = replace(found, coherence=1.2 * np.ones((101, 3, 3)), frequencies=lines[::-1], inputs=(*CHANNELS[:2], Channel("x", "V")))
-    assert [fault.kind for fault in responses_findings(wrong, STAGE)] == [Allow.NAMES, None, Allow.CLIPPED]
+    assert [fault.kind for fault in responses_findings(wrong, STAGE)] == [FaultTolerance.NAMES, None, FaultTolerance.CLIPPED]
 
 
 @pytest.mark.parametrize(("name", "unit"), [("hammer", "N"), ("f1", "")])
@@ -234,13 +244,13 @@ def test_a_force_windowed_hammer_is_refused_by_its_name(name: str, unit: str) ->
     values[:200, 0], values[200:, 0] = 0.0, 0.0
     values[100:180, 0] = np.hanning(80) * 50.0
     hit = replace(record(values, (Channel(name, unit, Role.INPUT), *CHANNELS[1:])), start=0.5)
-    told = [fault for fault in examine(hit).faults if fault.channel == name and fault.kind is Allow.WINDOWED]
+    told = [fault for fault in examine(hit).faults if fault.channel == name and fault.kind is FaultTolerance.WINDOWED]
     at = 0.5 + 179 / RATE  # the window's last sample is nought too
     assert [fault.finding.what.partition(",")[0] for fault in told] == [f"it looks force-windowed: exact zeros from {at:.6g} s on"]
     assert "2.19 % of the record" in told[0].finding.what
     with pytest.raises(DesignError, match="force-windowed"):
-        usable_record(hit, frozenset(Allow) - {Allow.WINDOWED})
-    assert name in usable_record(hit, frozenset(Allow)).names
+        usable_record(hit, frozenset(FaultTolerance) - {FaultTolerance.WINDOWED})
+    assert name in usable_record(hit, frozenset(FaultTolerance)).names
 
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(each, marks=pytest.mark.full) for each in (1, 2))])
@@ -255,7 +265,7 @@ def test_a_windowed_force_that_is_allowed_gives_the_mode(seed: int) -> None:
     made = in_memory([Channel("hammer", "N", Role.INPUT), Channel("y", "um", Role.OUTPUT)], rate, np.stack([force, moved], axis=1))
     with pytest.raises(DesignError, match='accept "windowed"'):
         usable_record(made)
-    found = identify(usable_record(made, frozenset({Allow.WINDOWED})))
+    found = identify(usable_record(made, frozenset({FaultTolerance.WINDOWED})))
     assert len(found.frequencies) == 1
     assert abs(found.frequencies[0] - natural) < 4.0 * found.frequency_deviations[0] + 1e-6 * natural
     assert abs(found.damping[0] - ratio) < 4.0 * found.damping_deviations[0] + 1e-4 * ratio

@@ -103,7 +103,9 @@ def test_modes_of_a_blow_by_the_analyser_and_by_its_time_frame() -> None:
     found = identify(averaged)
     assert found.frequencies == pytest.approx([34.05, 162.6, 212.1], rel=2e-3)
     assert found.damping[1] > 20.0 * found.damping[2]
-    assert any("further modes next to those found may be missing" in each for each in found.warnings)  # 66.9 Hz is narrower than a line
+    assert any(
+        "further modes next to those found may be missing" in each for each in found.data_warnings
+    )  # 66.9 Hz is narrower than a line
     frame = identify(record("case1.mat", FRAME))
     assert frame.frequencies[-2:] == pytest.approx([162.8, 212.1], rel=2e-3)
     np.testing.assert_allclose(frame.frequencies[-2:], found.frequencies[1:], rtol=5e-3)

@@ -14,7 +14,7 @@ import flexstage as fs
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.dynamics.modes import subspace_angle
 from flexstage.base.number import Array
-from flexstage.experiment import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
+from flexstage.experiment import Amplifier, AntiAlias, InputQuantity, InputSignal, NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.identification.identify import Search, identify
@@ -117,7 +117,7 @@ def test_errors_of_responses_are_as_large_as_their_spectra_state() -> None:
 
 def test_the_amplifier_and_the_filter_are_part_of_responses_to_the_command() -> None:
     _, model = stage()
-    setup = replace(BARE, seconds=120.0, filter=AntiAlias(4, 400.0), tap=Tap.COMMAND, recorded=Recorded.VOLTAGE)
+    setup = replace(BARE, seconds=120.0, filter=AntiAlias(4, 400.0), input_signal=InputSignal.COMMAND, input_quantity=InputQuantity.VOLTAGE)
     record = recorded(replace(setup, amplifier=Amplifier(resistance=1000.0), drive=NoiseDrive(voltage=2.0)))
     known = spectra(record, Segments(16.0)).band(10.0, 60.0)
     corner = 1.0 / (2.0 * np.pi * 1000.0 * np.array([4e-7] * 3 + [1.3e-6] * 3))

@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
-from flexstage.experiment import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing
+from flexstage.experiment import Amplifier, AntiAlias, InputQuantity, NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.virtual_rig.plan import plan_test, volts_per_metre
 from flexstage.mechanism.mechanism import ModalDamping
 from flexstage.models.mapped import mapped
@@ -79,7 +79,7 @@ def test_stacks_without_voltage_or_capacitance_are_named() -> None:
         for name, part in STAGE.parts.items()
     }
     stage = replace(STAGE, parts=parts)
-    assert "B1: its stack states no range of voltage" in told(replace(SOUND, recorded=Recorded.VOLTAGE), stage)
+    assert "B1: its stack states no range of voltage" in told(replace(SOUND, input_quantity=InputQuantity.VOLTAGE), stage)
     assert "B6: its stack states no capacitance" in told(replace(SOUND, amplifier=Amplifier(resistance=10.0)), stage)
     assert np.isnan(volts_per_metre(next(part for part in parts.values() if isinstance(part, fs.Piezo))))
     assert plan_test(stage, mapped(stage), SOUND).length == 20_480

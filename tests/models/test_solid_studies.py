@@ -301,9 +301,9 @@ def test_jobs_of_raised_components_are_those_of_the_next_order() -> None:
 def test_given_parts_are_drawn_as_what_they_stand_for() -> None:
     stage = small()
     unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    stands = replace(stage, parts={**stage.parts, "old": stage.parts["leaf"], "leaf": fs.Given(unit, free=(), replaces="old")})
+    stands = replace(stage, parts={**stage.parts, "old": stage.parts["leaf"], "leaf": fs.ComplianceMatrix(unit, free=(), replaces="old")})
     assert with_drawn_parts(stands).parts["leaf"] == stage.parts["leaf"]
-    lost = replace(stage, parts={**stage.parts, "leaf": fs.Given(unit, free=(), replaces="gone")})
+    lost = replace(stage, parts={**stage.parts, "leaf": fs.ComplianceMatrix(unit, free=(), replaces="gone")})
     with pytest.raises(DesignError, match='no part "gone"'):
         with_drawn_parts(lost)
 

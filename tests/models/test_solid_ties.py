@@ -17,9 +17,9 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.body import Block, Body, Inertia
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.contact import Contact
 from flexstage.parts.force_actuator import ForceActuator
-from flexstage.parts.given import Given
 from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import Supply, VoiceCoil
@@ -41,7 +41,7 @@ DIAGONAL = tuple(tuple(1.0 / SIX[i] if i == j else 0.0 for j in range(6)) for i 
 COUPLED = tuple(tuple(SIX[i] if i == j else 0.0 if {i, j} != {1, 5} else 4e3 for j in range(6)) for i in range(6))
 PARTS = {
     "spring": Spring(matrix=COUPLED, length=20 * mm, mass=0.02, loss_factor=0.1),
-    "given": Given(DIAGONAL, free=(), mass=0.03, centre=(1 * mm, 2 * mm, 3 * mm), inertia=Inertia(1e-6, 2e-6, 3e-6)),
+    "given": ComplianceMatrix(DIAGONAL, free=(), mass=0.03, centre=(1 * mm, 2 * mm, 3 * mm), inertia=Inertia(1e-6, 2e-6, 3e-6)),
     "amplified": Amplified(stroke=1e-4, deformation=(1e-4, 1e-5, 0.0, 0.0, 0.0, 1e-4), diagonal=SIX, mass=0.05),
     "stepper": SteppingDrive(travel=1e-3, diagonal=SIX, mass=0.04),
     "shear": ShearPiezo(

@@ -15,13 +15,13 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.experiment.pipeline import identification, usable_measurement
 from flexstage.experiment.records.record import Channel
 from flexstage.experiment.updating.fit import Problem, gauss_newton
-from flexstage.experiment.updating.free import Known, free
+from flexstage.experiment.updating.free import Prior, free
 from flexstage.experiment.updating.gains import _extrapolate_to_zero, measured_gains
 from flexstage.experiment.updating.rows import ModeRow, follow_modes, frequency_slopes, gain_slopes, start_design, static_gains
 from flexstage.experiment.updating.tables import update_table
 from flexstage.experiment.updating.text import updated_text
 from flexstage.experiment.updating.update import Told, Updated, update
-from flexstage.experiment.virtual_rig.recorded import Recorded
+from flexstage.experiment.virtual_rig.inputs import InputQuantity
 from flexstage.experiment.virtual_rig.rig import rig
 from flexstage.experiment.virtual_rig.setup import RigSetup, Sensing
 from flexstage.mechanism.addresses.address import get, set_value, tag_of
@@ -90,7 +90,7 @@ def test_lever_and_front_hinge_are_not_identifiable_from_frequencies_and_say_so(
 
 def test_from_static_gains_they_are() -> None:
     built = changed(lever=1.05, front=0.96)
-    found = update(STAGE, made(built), [LEVER, FRONT], Known(gain_error=1e-3))
+    found = update(STAGE, made(built), [LEVER, FRONT], Prior(gain_error=1e-3))
     lever, front = (found.addresses.index(name) for name in (LEVER, FRONT))
     assert found.told[lever] is Told.WELL
     assert found.told[front] is not Told.NOT
@@ -102,14 +102,14 @@ def test_from_static_gains_they_are() -> None:
 @pytest.mark.full  # necks are found in a record always
 def test_gains_from_a_record_in_volts() -> None:
     built = changed(lever=1.05)
-    setup = RigSetup(seconds=20.0, seed=2, sensing=Sensing(density=1e-9), recorded=Recorded.VOLTAGE)
+    setup = RigSetup(seconds=20.0, seed=2, sensing=Sensing(density=1e-9), input_quantity=InputQuantity.VOLTAGE)
     experiment = identification(usable_measurement([rig(built, lumped(built), setup)])).found
     gauges = tuple(channel.name for channel in experiment.outputs)
     gains = measured_gains(built, lumped(built), experiment, gauges)
     theory = static_gains(start_design(built, ()), gains)
     np.testing.assert_allclose(gains.values, theory, atol=4.0 * float(np.max(gains.deviations)))
     assert np.max(gains.deviations) < 0.01 * np.max(theory)
-    found = update(STAGE, experiment, [LEVER], Known(gain_error=1e-3))
+    found = update(STAGE, experiment, [LEVER], Prior(gain_error=1e-3))
     assert abs(errors(found, built)[0]) < 1.96 * found.deviations[0]
 
 
@@ -122,7 +122,7 @@ COPIES = 8 if FULL else 2
 def test_errors_are_as_large_as_stated() -> None:
     """Numbers drawn from their priors, frequencies with the stated errors: the whitened errors are normal."""
     random = np.random.default_rng(7)
-    known, names = Known(prior=0.02, model_error=1e-3), ["neck", "density", "stack"]
+    known, names = Prior(prior=0.02, model_error=1e-3), ["neck", "density", "stack"]
     total, chances = 0.0, list[float]()
     for seed in range(COPIES):
         built = changed(**dict(zip(names, np.exp(known.prior * random.standard_normal(3)), strict=True)))
@@ -137,9 +137,9 @@ def test_errors_are_as_large_as_stated() -> None:
 
 def test_chi_square_tells_of_what_is_not_modelled() -> None:
     built = changed(density=1.2)
-    found = update(STAGE, made(built), [NECK], Known(prior=0.05))
+    found = update(STAGE, made(built), [NECK], Prior(prior=0.05))
     assert found.probability < 1e-6
-    assert any("state a larger model error" in warning for warning in found.warnings)
+    assert any("state a larger model error" in warning for warning in found.data_warnings)
     told = update(STAGE, made(built), ["steel.density"])
     assert told.probability > 0.01
     tenth = scipy.stats.chi2.ppf(0.9, len(told.residuals))  # priors are data too: each makes up for the number that it is of
@@ -148,7 +148,7 @@ def test_chi_square_tells_of_what_is_not_modelled() -> None:
 
 def test_more_prior_is_left_where_it_is_narrower() -> None:
     experiment = made(changed(neck=1.05))
-    wide, narrow = (update(STAGE, experiment, [NECK], Known(priors={"neck.thickness": share})) for share in (0.1, 0.001))
+    wide, narrow = (update(STAGE, experiment, [NECK], Prior(priors={"neck.thickness": share})) for share in (0.1, 0.001))
     assert wide.remaining_variance[0] < 0.01
     assert narrow.remaining_variance[0] > 0.9
     assert narrow.verdicts == ("not identifiable from frequencies",)
@@ -221,22 +221,22 @@ def test_the_new_file_keeps_comments_and_says_where_values_are_from() -> None:
 @pytest.mark.parametrize(
     ("names", "known", "said"),
     [
-        ((), Known(), "no number is free"),
-        (("neck.thicknes",), Known(), "The nearest name is thickness"),
-        (("front.thickness",), Known(), "Write horizontal/front.thickness or vertical/front.thickness"),
-        (("horizontal/frnt.thickness",), Known(), "The nearest name is front"),
-        (("parts.neck",), Known(), "not a single number"),
-        (("platform.mass",), Known(), "the body's mass follows from its solids"),
-        (("horizontal/front.at.y",), Known(), "it is 0"),
-        (("neck.thickness", NECK), Known(), "named twice"),
-        (("steel.yield_stress",), Known(), "has no effect on the frequencies compared"),
-        (("steel.yield_stress",), Known(gain_error=1e-3), "has no effect on the frequencies and gains compared"),
-        ((NECK,), Known(prior=0.0), "0 is none"),
-        ((NECK,), Known(priors={"steel.density": 0.1}), "not among the free numbers"),
-        ((NECK, "neck.width", "steel.density", "steel.young", LEVER), Known(), "4 data"),
+        ((), Prior(), "no number is free"),
+        (("neck.thicknes",), Prior(), "The nearest name is thickness"),
+        (("front.thickness",), Prior(), "Write horizontal/front.thickness or vertical/front.thickness"),
+        (("horizontal/frnt.thickness",), Prior(), "The nearest name is front"),
+        (("parts.neck",), Prior(), "not a single number"),
+        (("platform.mass",), Prior(), "the body's mass follows from its solids"),
+        (("horizontal/front.at.y",), Prior(), "it is 0"),
+        (("neck.thickness", NECK), Prior(), "named twice"),
+        (("steel.yield_stress",), Prior(), "has no effect on the frequencies compared"),
+        (("steel.yield_stress",), Prior(gain_error=1e-3), "has no effect on the frequencies and gains compared"),
+        ((NECK,), Prior(prior=0.0), "0 is none"),
+        ((NECK,), Prior(priors={"steel.density": 0.1}), "not among the free numbers"),
+        ((NECK, "neck.width", "steel.density", "steel.young", LEVER), Prior(), "4 data"),
     ],
 )
-def test_bad_questions_are_refused(names: Sequence[str], known: Known, said: str) -> None:
+def test_bad_questions_are_refused(names: Sequence[str], known: Prior, said: str) -> None:
     with pytest.raises(DesignError, match=said):
         update(STAGE, made(STAGE), names, known)
 
@@ -252,7 +252,7 @@ def test_tests_that_do_not_fit_are_refused() -> None:
 
 
 def test_gains_need_units_actuators_and_low_lines() -> None:
-    experiment, known = made(STAGE), Known(gain_error=1e-3)
+    experiment, known = made(STAGE), Prior(gain_error=1e-3)
     bare = tuple(Channel(channel.name, "", channel.role) for channel in experiment.inputs)
     with pytest.raises(DesignError, match="leads to no stroke"):
         update(STAGE, replace(experiment, inputs=bare), [LEVER], known)
@@ -321,12 +321,12 @@ def test_nothing_is_said_of_numbers_where_theory_and_test_contradict_each_other(
     names = {"B1": "B4", "B4": "B1"}
     renamed = tuple(replace(channel, name=names.get(channel.name, channel.name)) for channel in plain.responses.inputs)
     test = replace(plain, inputs=renamed, responses=replace(plain.responses, inputs=renamed))
-    found = update(STAGE, test, [NECK], Known(gain_error=0.02))
+    found = update(STAGE, test, [NECK], Prior(gain_error=0.02))
     assert found.chi_square > 1e3
     assert found.told == (Told.WITHHELD,)
     assert found.verdicts[0].startswith("withheld: chi-square ")
     assert update_table(found).texts()[1][-1] == found.verdicts[0]
-    assert any("look exchanged" in each for each in found.warnings)
+    assert any("look exchanged" in each for each in found.data_warnings)
     assert "theory and test contradict each other" in updated_text(dumps(STAGE), found, "test.uff")
 
 

@@ -25,11 +25,11 @@ from flexstage.cases.registry import CASES
 from flexstage.control.study.file import example, loads_setup
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.records.options import Allow, Arrays, Kind, Options
+from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options
 from flexstage.experiment.records.record import Channel, Record, Role, in_memory
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.store import dumps, loads, round_to_digits
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.example import neck_study
 from flexstage.studies.sweeps.execution.gather import gather
 from flexstage.studies.sweeps.execution.store import read_results
@@ -81,7 +81,7 @@ TOLERANCE = """tolerance = { copies = 64, requirements = false, crosstalk = fals
 wire = { address = "parts.leaf.thickness", normal = "5 um" }
 wear = { address = "links.left.thickness", uniform = "5 um" }
 """
-_ALL = frozenset(Allow)
+_ALL = frozenset(FaultTolerance)
 SETUP = """format = "flexstage loop 1"
 model = "lumped"
 rate = "10 kHz"
@@ -113,8 +113,8 @@ TRAJECTORIES = (
 )
 WAYS = (
     Options(),
-    Options(allow=_ALL, rate=50.0),
-    Options(kind=Kind.RESPONSES, allow=_ALL),
+    Options(accept_faults=_ALL, rate=50.0),
+    Options(kind=Kind.RESPONSES, accept_faults=_ALL),
     Options(rate=50.0, arrays=Arrays(samples=("*[uy]",))),
 )
 """How every record is read: as it is, with everything allowed, as a record and as responses, with arrays that are named."""
@@ -213,7 +213,7 @@ def try_study(text: str) -> None:
     else:
         study = loads_study(text)
         if "optimise" in text:
-            load_wanted(study)
+            load_optimisation(study)
 
 
 def a_setup(chance: random.Random) -> bytes:

@@ -11,12 +11,12 @@ from flexstage.base.finding import DesignError
 from flexstage.base.units.quantity import DIRECTION, LENGTH
 from flexstage.mechanism.addresses.address import addresses, assign, get, provenance, quantity_of, set_value, tag_of
 from flexstage.mechanism.assembly.expand import expand
-from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar, Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.gauge import Gauge, Positive
-from flexstage.parts.given import Given
+from flexstage.parts.gauge import Gauge, SensorSense
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.part import Restricted
@@ -42,15 +42,15 @@ def stage() -> Mechanism:
         parts={
             "neck": neck,
             "wire": Rod("steel", length=0.03, diameter=0.001),
-            "pivot": Given(compliance, free=(Freedom.RZ,)),
+            "pivot": ComplianceMatrix(compliance, free=(Freedom.RZ,)),
             "axial": Restricted(neck, elastic=(Freedom.X,)),
         },
         bodies={"platform": Body(solids={"plate": Block("steel", (0.3, 0.2, 0.02))})},
         links={"strut": Link(("ground", "platform"), "wire", (0.0, 0.0, -0.02), Z)},
         units={"leg": unit},
-        placements={"L1-L3": Placement("leg", Polar(radius=0.08, first=0.0, facing=Facing.TANGENT))},
+        placements={"L1-L3": Placement("leg", Polar(radius=0.08, first=0.0, facing=InstanceOrientation.TANGENT))},
         sensors={"gap": Gauge(range=1e-4)},
-        gauges={"S1": Probe("gap", "platform", Pose(), Positive.OPENS)},
+        gauges={"S1": Probe("gap", "platform", Pose(), SensorSense.OPENS)},
         tags={"parts.neck.thickness": "stated paper 2.2", "units.leg.links.front.at": "derived fit"},
         sources={"paper": "a paper", "fit": "a fit"},
     )
@@ -132,7 +132,7 @@ def test_values_may_be_arrays_and_complex() -> None:
 def test_names_and_directions_are_assigned_too() -> None:
     assert get(assign(stage(), "leg/front.along=-y"), "units.leg.links.front.along") == (0.0, -1.0, 0.0)
     assert get(assign(stage(), "parts.neck.material=invar"), "parts.neck.material") == "invar"
-    assert get(assign(stage(), "S1.positive=closes"), "gauges.S1.positive") is Positive.CLOSES
+    assert get(assign(stage(), "S1.positive=closes"), "gauges.S1.positive") is SensorSense.CLOSES
 
 
 def test_quantities() -> None:

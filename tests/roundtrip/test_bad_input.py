@@ -15,14 +15,14 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.stack import load_hysteresis
 from flexstage.control.study.file import load_setup
-from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar, Pose
 from flexstage.mechanism.checks import check, require_valid
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement
 from flexstage.mechanism.store import load, loads
 from flexstage.mechanism.store.file import LARGEST, read_text
 from flexstage.parts.body import Block, Body, Cylinder, Inertia, Payload
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Given, Joint
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.part import Restricted
@@ -289,15 +289,15 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (part(Rod("steel", length=np.array([0.1, 0.2, -0.3]), diameter=0.01)), ["parts.p.length at index 2", "-300 mm"]),
         (part(Notch("steel", np.array([[0.001], [0.02]]), np.array([0.01, 0.03]), Circular(1.0))), ["at index 1, 0", "20 mm", "10 mm"]),
         (part(Rod("steel", length=np.ones(2), diameter=np.ones(3))), ["batch", "(2,)", "(3,)", "broadcast"]),
-        (part(Given(matrix(x05=1e-7), (Freedom.RZ,))), ["parts.p.compliance at index 0, 5", "not symmetric", "1e-07"]),
-        (part(Given(matrix(x05=2e-6, x50=2e-6), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite"]),
-        (part(Given(matrix(x33=0.0), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite", "Restricted"]),
+        (part(ComplianceMatrix(matrix(x05=1e-7), (Freedom.RZ,))), ["parts.p.compliance at index 0, 5", "not symmetric", "1e-07"]),
+        (part(ComplianceMatrix(matrix(x05=2e-6, x50=2e-6), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite"]),
+        (part(ComplianceMatrix(matrix(x33=0.0), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite", "Restricted"]),
         (part(dataclasses.replace(STACK, preload=20.0, maximum_load=10.0)), ["parts.p.preload", "20 N", "maximum load, 10 N"]),
         (part(dataclasses.replace(STACK, voltage_low=100.0, voltage_high=-20.0)), ["parts.p.voltage_low", "100 V", "-20 V"]),
         (linked(Notch("steel", 0.001, 0.01, Circular(0.005))), ["links.l", 'part "p" is not round', 'bends = "y"']),
         (linked(Neck("steel", 0.001, Straight(0.005), width=0.002)), ["links.l", "not round"]),
         (linked(Joint((Freedom.RZ,))), ["links.l", "not round"]),
-        (linked(Given(matrix(x11=2e-6), (Freedom.RX,))), ["links.l", "not round"]),
+        (linked(ComplianceMatrix(matrix(x11=2e-6), (Freedom.RX,))), ["links.l", "not round"]),
         (linked(Rod("steel", 0.1, 0.01), free=(Freedom.RY,)), ["links.l", "not round"]),
         (linked(Rod("steel", 0.1, 0.01), bends=(1.0, 0.0, 1.0)), ["links.l.bends", "45 deg", "90 deg"]),
         (linked(Rod("steel", 0.1, 0.01), bends=X), ["links.l.bends", "0 deg", "90 deg"]),
@@ -345,7 +345,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
             ["units.leg.bodies.platform", "the stage itself has a body"],
         ),
         (
-            dataclasses.replace(STAGE, placements={"L" * 70: Placement("leg", Polar(0.1, 0.0, Facing.AXIS))}),
+            dataclasses.replace(STAGE, placements={"L" * 70: Placement("leg", Polar(0.1, 0.0, InstanceOrientation.AXIS))}),
             ["placements.LLL", "70 characters"],
         ),
         (dataclasses.replace(STAGE, overrides={"L2/front.diameter": -0.001}), ['overrides."L2/front.diameter"', "-1 mm"]),
@@ -369,7 +369,7 @@ def test_each_fault_of_a_description_is_told(mechanism: Mechanism, words: list[s
         linked(Notch("steel", 0.001, 0.01, Circular(0.005)), bends=Z),
         linked(Neck("steel", 0.001, Circular(0.005))),
         linked(Joint((Freedom.RX, Freedom.RY, Freedom.RZ))),
-        linked(Given(matrix(), (Freedom.RX,))),
+        linked(ComplianceMatrix(matrix(), (Freedom.RX,))),
         linked(Rod("steel", 0.1, 0.01), bends=(0.0, 0.0008, 1.0)),
         linked(STACK),
         body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 2.0))),

@@ -12,7 +12,7 @@ from flexstage.base.finding import DesignError
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Criterion
 from flexstage.control.study.file import FORMAT, example, load_setup, loads_setup, setup_schema
-from flexstage.control.study.setup import FileMotion, LoopNumbers, LoopSetup, NotchAt, PrefilterAt, RasterMotion, VibrationSetup
+from flexstage.control.study.setup import FileMotion, LoopNumbers, LoopSetup, NotchSetup, PrefilterSetup, RasterMotion, VibrationSetup
 from flexstage.mechanism.store import schema
 from tests.roundtrip.test_schema import Rules
 
@@ -77,7 +77,7 @@ lines = 5
     assert found.floor.x == VibrationSetup(criterion=Criterion.VC_D)
     assert found.floor.z == VibrationSetup(frequencies=(1.0, 10.0), velocity=(1e-6, 1e-7))
     assert (found.controller.kind, found.controller.coordinates) == (ControllerKind.PID, Axes.MODAL)
-    assert found.controller.notches == (NotchAt(106.0),)
+    assert found.controller.notches == (NotchSetup(106.0),)
     assert found.trajectory == RasterMotion(lines=5)
     assert not list(setup_findings(found))
 
@@ -93,7 +93,7 @@ proportional = 4.85
 notches = [{{ frequency = "103.5 Hz", depth = 0.0409, damping = 2.37 }}]
 prefilter = {{ frequency = "93 Hz", lead = "208 Hz" }}
 """).controller
-    notch, prefilter = NotchAt(103.5, 0.0409, 2.37), PrefilterAt(93.0, 1.0, 208.0)
+    notch, prefilter = NotchSetup(103.5, 0.0409, 2.37), PrefilterSetup(93.0, 1.0, 208.0)
     assert found.loops == (LoopNumbers(("x", "y"), proportional=4.85, notches=(notch,), prefilter=prefilter),)
     assert found.stated == ("proportional", "integral")
 

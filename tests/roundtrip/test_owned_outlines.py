@@ -10,7 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.base.units.scale import deg, mm
 from flexstage.mechanism.assembly.expand import expand
-from flexstage.mechanism.assembly.pattern import Facing, Polar
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.geometry.outline import outlines
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Unit
@@ -23,7 +23,7 @@ STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 PLATE = Body(solids={"plate": Block("steel", (0.2, 0.2, 0.02), (0.0, 0.0, 0.1))})
 LUG = Block("steel", (0.01, 0.02, 0.03), (0.0, 0.005, 0.075))
 PIN = Cylinder("steel", 0.004, 0.01, (0.0, 0.005, 0.055), along=(0.0, 1.0, 0.0))
-RING = Polar(0.08, 20 * deg, Facing.TANGENT)
+RING = Polar(0.08, 20 * deg, InstanceOrientation.TANGENT)
 
 
 def lent(end: str = "lug", owner: str = "platform", **body: object) -> Mechanism:

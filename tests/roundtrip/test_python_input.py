@@ -38,7 +38,7 @@ def test_a_text_is_no_number(made):
         (lambda: fs.Rod("steel", length=None, diameter=0.1), ["Rod.length", "None", "a number"]),
         (lambda: fs.Rod("steel", length=True, diameter=0.1), ["Rod.length", "True", "a number"]),
         (lambda: fs.Mechanism("", parts={"p": "wire"}), ["Mechanism.parts.p", "'wire'", "Elastic"]),
-        (lambda: fs.Given(np.eye(6), ()), ["Given.compliance", "ndarray", "6 values", "tuple"]),
+        (lambda: fs.ComplianceMatrix(np.eye(6), ()), ["ComplianceMatrix.compliance", "ndarray", "6 values", "tuple"]),
     ],
 )
 def test_values_of_another_kind_are_refused_at_construction(made, words):

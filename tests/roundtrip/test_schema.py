@@ -23,7 +23,7 @@ from flexstage.control.hysteresis.stack import dumps_hysteresis, hysteresis_sche
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, schema
 from flexstage.studies.form import study_schema
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.tolerances.file import loads_tolerance
 from tests.conftest import examples
@@ -188,7 +188,7 @@ wear = { address = "links.left.thickness", uniform = "5 um" }
 def test_a_study_fits_and_is_read() -> None:
     assert fits(STUDY, study_schema())
     assert loads_study(STUDY).variables[1].step == pytest.approx(1e-3)
-    assert len(load_wanted(loads_study(STUDY)).objectives) == 2
+    assert len(load_optimisation(loads_study(STUDY)).objectives) == 2
     assert [each.name for each in loads_tolerance(STUDY).scatters] == ["wire", "wear"]
     keys = {key for table in study_schema()["$defs"].values() for key in table["properties"]} | set(study_schema()["properties"])
     assert {key for key in keys if not re.search(rf"\b{key}\b", STUDY)} == {"design", "parameter"}

@@ -68,7 +68,7 @@ def test_what_a_sweep_tells_is_what_its_designs_have():
     ]
     for each, values in zip(told["responses"], results.responses.T, strict=True):
         expected = (values.min(), values.mean(), values.std(), values.max())
-        assert [each[key] for key in ("least", "mean", "deviation", "largest")] == pytest.approx(expected)
+        assert [each[key] for key in ("min_value", "mean", "deviation", "max_value")] == pytest.approx(expected)
         assert each["unit"] == study.columns[each["name"]].quantity.si
     assert told["responses"][2]["first_order"] == pytest.approx({"leaf": 0.0, "young": 1.0})
 

@@ -63,9 +63,9 @@ TITLES = {
 REACH = {
     "command": "all at once",
     "limits": "limited by",
-    "single": "Single-axis strokes",
+    "single_axis": "Single-axis strokes",
     "corrected": "corrected, both ways",
-    "corner": "Simultaneous strokes",
+    "worst_case": "Simultaneous strokes",
     "polytope": "Reachable extents",
     "drive": "Drive",
     "map_error": "Error of the linear map",
@@ -84,7 +84,7 @@ NOT_SHOWN = {"mechanism", "model", "linear", "missing", "reasons"}
 def test_every_result_is_presented() -> None:
     """A result that is added to the analysis fails here until the report shows it."""
     # reach: of stages that forces move, see test_voice_coil; freedoms: of stages with fewer than six; ends: warnings of stages with paths
-    assert {field.name for field in fields(Analysis)} - NOT_SHOWN - {"reach", "freedoms", "ends"} == set(TITLES)
+    assert {field.name for field in fields(Analysis)} - NOT_SHOWN - {"force_workspace", "freedoms", "ends"} == set(TITLES)
     assert {field.name for field in fields(Workspace)} - NOT_SHOWN == set(REACH)
     page = reported("double-triangle")
     assert [title for title in (*TITLES.values(), *REACH.values()) if title not in page] == []
@@ -243,7 +243,7 @@ def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:
     rows = row_table("Units", units(case("parallelogram")), "axial", "series", "gain", head="unit")
     assert rows.texts()[0] == ["unit", "axial [N/um]", "series [N/um]", "gain"]
     one = Buckling(("a",), np.ones(1), np.ones(1), np.ones(1), (Ends.FREE,), "", Stability(*[np.array(2.0)] * 4, (), ""))
-    assert record_table("Stage", one, "least", "weakest").texts()[1:] == [["least", "2", ""], ["weakest", "a", ""]]
+    assert record_table("Stage", one, "min_factor", "weakest").texts()[1:] == [["min factor", "2", ""], ["weakest", "a", ""]]
     assert record_table("Stage", replace(one, links=()), "weakest").texts()[1:] == [["weakest", "-", ""]]
     unknown = _Pressed(("a", "b"), np.array([1.0, np.nan]), np.array([np.nan, 0.5]), (Ends.FREE, Ends.FREE))
     assert [row[1:3] for row in row_table("Bars", unknown).texts()[1:]] == [["1", "-"], ["-", "50 %"]]

@@ -13,7 +13,7 @@ from flexstage.parts.cartwheel import Cartwheel
 from flexstage.parts.contact import Contact
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.folded_leaf import FoldedLeaf
-from flexstage.parts.gauge import Gauge, Positive
+from flexstage.parts.gauge import Gauge, SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -64,7 +64,7 @@ def zoo() -> Mechanism:
         bodies={"platform": Body(solids=solids)},
         links=links,
         sensors={"probe": Gauge(range=100e-6)},
-        gauges={"S": Probe("probe", "platform", Pose((0.1, 0.0, 0.0), (1.0, 0.0, 0.0)), positive=Positive.OPENS)},
+        gauges={"S": Probe("probe", "platform", Pose((0.1, 0.0, 0.0), (1.0, 0.0, 0.0)), positive=SensorSense.OPENS)},
     )
 
 

@@ -72,7 +72,7 @@ def _amplifier(angle: float, *, slender: bool) -> fs.Mechanism:
     compliance = tuple(tuple(value if row == column else 0.0 for column in range(6)) for row, value in enumerate(diagonal))
     parts = {**stage.parts, "guide": fs.Joint((fs.Freedom.Y,))}
     if slender:
-        parts["leaf"] = fs.Given(compliance, free=(fs.Freedom.RZ,))
+        parts["leaf"] = fs.ComplianceMatrix(compliance, free=(fs.Freedom.RZ,))
     return replace(stage, parts=parts, materials={"aluminium": material}, tags={})
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
-from flexstage.models.nonlinear.paths.critical import critical, unstable_motions
+from flexstage.models.nonlinear.paths.critical_load import critical_load, unstable_motions
 from flexstage.parts.section import Rectangle
 from tests.analytic.strips import secant
 from tests.analytic.test_large_displacements import (
@@ -57,11 +57,18 @@ def _buckling() -> Section:
             "cantilever, G A = 200 E I / L^2",
             "Haringx 1948",
             "2.4376895",
-            critical(shearing(), {"platform.fx": -RIGIDITY}).factor,
+            critical_load(shearing(), {"platform.fx": -RIGIDITY}).factor,
             "1",
             relative(1e-7),
         ),
-        Row("tip load of a strip, / sqrt(E I G J)", "Prandtl 1899", "4.01259934", critical(strip, load).factor / unit, "1", relative(1e-6)),
+        Row(
+            "tip load of a strip, / sqrt(E I G J)",
+            "Prandtl 1899",
+            "4.01259934",
+            critical_load(strip, load).factor / unit,
+            "1",
+            relative(1e-6),
+        ),
         Row(
             "misalignment of a guide's foot, E I_y / sqrt(E I G J)",
             "4 pi",

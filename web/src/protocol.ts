@@ -455,7 +455,7 @@ export interface Welcome {
  * The text and what it says; pushed at every change. `digest` is that of the file on disk.
  *
  * `sound`: the design has no error. If not, `problems` list them; where they are of the text, numbers and figures are those of the last
- * text without. `changed` counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made
+ * text without. `changed` counts numbers that differ from the file's, `warnings` are those told last, `page` is the one whose request made
  * the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each. `unprotected` is
  * the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
  */
@@ -473,7 +473,7 @@ export interface State {
   undo: boolean;
   redo: boolean;
   problems: Problem[];
-  cautions: Problem[];
+  warnings: Problem[];
   amounts: Amount[];
   actuators: Channel[];
   axes: Channel[];
@@ -552,10 +552,10 @@ export interface Reach {
 }
 
 /** What is doubtful or taken by default in a revision; the last that is told of it. */
-export interface Cautions {
-  kind: "cautions";
+export interface Warnings {
+  kind: "warnings";
   revision: number;
-  cautions: Problem[];
+  warnings: Problem[];
 }
 
 /**
@@ -650,7 +650,7 @@ export interface Travelled {
   to: number;
   revision: number;
   motions: unknown;
-  cautions: Problem[];
+  warnings: Problem[];
 }
 
 /** Free motions, constraints of which some are superfluous with what they hold, motions that nothing feels, and what locks it. */
@@ -763,7 +763,7 @@ export type Said =
   | Figures
   | Verdicts
   | Reach
-  | Cautions
+  | Warnings
   | Card
   | Place
   | Motion

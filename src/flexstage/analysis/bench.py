@@ -18,9 +18,9 @@ from flexstage.analysis.loaded.stability import Stability, stability
 from flexstage.analysis.loaded.standing import drawn, kinematics, standing, under_load
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
+from flexstage.analysis.workspace.force_workspace import ForceWorkspace, force_workspace, input_limits
 from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
-from flexstage.analysis.workspace.reach import ForceReach, input_limits, reach
 from flexstage.analysis.workspace.small import SmallMotion, small_motion
 from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
@@ -57,7 +57,7 @@ class Bench:
         self.mechanism = mechanism
         self.command = command
         self._corrections: dict[str, Matrix] = {}
-        self._reaches: dict[str, ForceReach] = {}
+        self._force_workspaces: dict[str, ForceWorkspace] = {}
         self._points: dict[tuple[str, float | None], strokes.Points] = {}
         self._ones: dict[tuple[int, float], Bench] = {}
         self._along: dict[str, Bench] = {}
@@ -106,11 +106,11 @@ class Bench:
             self._along[name] = other
         return self._along[name]
 
-    def reach(self, point: str) -> ForceReach:
+    def force_workspace(self, point: str) -> ForceWorkspace:
         """How far forces move a point, and what limits it: by the drawn stage."""
-        if point not in self._reaches:
-            self._reaches[point] = reach(self.mechanism, self.kinematics, self.drawn, point=point)
-        return self._reaches[point]
+        if point not in self._force_workspaces:
+            self._force_workspaces[point] = force_workspace(self.mechanism, self.kinematics, self.drawn, point=point)
+        return self._force_workspaces[point]
 
     @property
     def forced(self) -> bool:

@@ -25,8 +25,8 @@ from flexstage.analysis.linear_statics.units import UnitResult, units
 from flexstage.analysis.loaded.load_effect import LoadEffect, load_effect
 from flexstage.analysis.loaded.standing import require_standing, standing
 from flexstage.analysis.workspace.buckling import Buckling, buckling
-from flexstage.analysis.workspace.reach import ForceReach
-from flexstage.analysis.workspace.reach import reach as reach_of
+from flexstage.analysis.workspace.force_workspace import ForceWorkspace
+from flexstage.analysis.workspace.force_workspace import force_workspace as reach_of
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
@@ -86,7 +86,7 @@ class Analysis:
     units: Mapping[str, UnitResult] | None
     verdicts: tuple[Verdict, ...]
     missing: Mapping[str, str]
-    reach: ForceReach | None = None
+    force_workspace: ForceWorkspace | None = None
     freedoms: FreedomStiffness | None = None
     mass: MassMatrix | None = None
     loaded: LoadEffect | None = None
@@ -176,7 +176,9 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         error_budget=attempt.of_ground("error_budget", hinged, _UNLUMPED, lambda _: _errors(mechanism, command, reach, drifted)),
         units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: alone()),
         verdicts=verdicts,
-        reach=None if forced is None else attempt.of_ground("reach", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
+        force_workspace=None
+        if forced is None
+        else attempt.of_ground("force_workspace", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
         mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
         loaded=loading,
@@ -190,7 +192,7 @@ def _ends(mechanism: Mechanism) -> load_cases.CaseFactors:
     """Load cases at the ends of paths, followed as far as a factor is asked for."""
     cases = [each for name in mechanism.paths for each in load_cases.path_cases(mechanism, name)]
     demand = asked_factor(mechanism)
-    return load_cases.critical_factors(mechanism, cases, most=max(demand, 1.0), demand=demand)
+    return load_cases.buckling_factors(mechanism, cases, most=max(demand, 1.0), demand=demand)
 
 
 def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None) -> Buckling:

@@ -18,10 +18,10 @@ from flexstage.beams.shear_piezo import SHEAR_PIEZO
 from flexstage.beams.spring import SPRING
 from flexstage.beams.voice_coil import VOICE_COIL
 from flexstage.parts.amplified import Amplified, SteppingDrive
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.contact import Contact
 from flexstage.parts.cruciform import Cruciform
 from flexstage.parts.force_actuator import ForceActuator
-from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.membrane import Membrane
 from flexstage.parts.neck import Neck
@@ -34,7 +34,7 @@ from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
 _HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Membrane: MEMBRANE, Cruciform: CRUCIFORM}
-_STATED = {Given: GIVEN, Spring: SPRING, Contact: CONTACT}
+_STATED = {ComplianceMatrix: GIVEN, Spring: SPRING, Contact: CONTACT}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
 _OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})

@@ -19,8 +19,8 @@ from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
 from flexstage.beams.held import Held, join
 from flexstage.beams.law import PartLaw
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import ALL, Freedom, others
-from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.part import Elastic, Part, Restricted, inner, material_of
 
@@ -44,7 +44,7 @@ class Law:
 
 
 def compliance(part: Elastic, material: Material | None) -> Array:
-    """Compliance (..., 6, 6) of a part about its centre, rows (x, y, z, rx, ry, rz), SI; diagonal but for a `Given` part.
+    """Compliance (..., 6, 6) of a part about its centre, rows (x, y, z, rx, ry, rz), SI; diagonal but for a `ComplianceMatrix` part.
 
     `material` is needed by notches, necks, leaves and rods. Raises `DesignError` if it is missing, and for a part that states its stiffness
     and has none in some motion: its compliance does not exist.

@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.base.storage.digest import keep
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import beam_of, law_of
-from flexstage.parts.given import Joint
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, inner, strut_of
 from flexstage.parts.shape import Shaped

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from flexstage.base.number import Array, stack
 from flexstage.beams.law import PartLaw
-from flexstage.parts.given import Given
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 
 
-def given_compliance(part: Given) -> Array:
+def given_compliance(part: ComplianceMatrix) -> Array:
     """The stated compliance (..., 6, 6) about the centre.
 
-    >>> given_compliance(Given(tuple(tuple(float(i == j) for j in range(6)) for i in range(6)), free=())).trace()
+    >>> given_compliance(ComplianceMatrix(tuple(tuple(float(i == j) for j in range(6)) for i in range(6)), free=())).trace()
     np.float64(6.0)
     """
     return stack(part.compliance)

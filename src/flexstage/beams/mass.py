@@ -14,7 +14,7 @@ from flexstage.base.storage.digest import keep
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import Law, beam_of, held_modes, law, law_of
 from flexstage.beams.held import Held, join
-from flexstage.parts.given import Joint
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.part import Elastic, Part, Restricted, inner
 
@@ -25,7 +25,7 @@ def mass(part: Part, material: Material | None) -> Array:
 
     The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K: S the compliance accumulated from the first end to
     x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
-    It holds the material between the arc ends and gives a rigid motion the inertia of the solid exactly. A `Given`
+    It holds the material between the arc ends and gives a rigid motion the inertia of the solid exactly. A `ComplianceMatrix`
     part has half its mass at each end; `Joint` and `Restricted` parts have none. A part with m modes of its own has (..., 12 + m, 12 + m):
     their unit masses, and what they share with the motion of its ends.
 

@@ -22,7 +22,7 @@ from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.piezo import Piezo
 
@@ -67,7 +67,7 @@ def bridge(parameters: Bridge | None = None) -> Mechanism:
         units={name: _arm(p, *ends) for name, ends in arms.items()},
         placements={_copy(name): Placement(name, _arm_pose(p, *ends)) for name, ends in arms.items()},
         sensors={"probe": replace(GAUGE, range=500 * um, resolution=1 * nm, source="capacitive gauge of 500 um range, typical")},
-        gauges={"S": Probe("probe", "platform", Pose((0.0, top + 0.5 * p.size[1], 0.0), along=Y), Positive.OPENS)},
+        gauges={"S": Probe("probe", "platform", Pose((0.0, top + 0.5 * p.size[1], 0.0), along=Y), SensorSense.OPENS)},
         damping=ModalDamping(0.01),
         envelope=(90 * mm, 50 * mm, 10 * mm),
         max_mode_frequency=5 * kHz,

@@ -17,11 +17,11 @@ import numpy as np
 from flexstage.base.number import Number, Vector
 from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
 from flexstage.base.units.scale import X, Y, Z, deg, kHz, mm, um
-from flexstage.mechanism.assembly.pattern import Facing, Polar
-from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
+from flexstage.mechanism.mechanism import Aperture, Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body, Cylinder, Solid
 from flexstage.parts.freedom import ROTATIONS, Freedom
-from flexstage.parts.gauge import Gauge, Positive
+from flexstage.parts.gauge import Gauge, SensorSense
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -216,8 +216,8 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
     ['B1-B3', 'B4-B6']
     """
     p = parameters
-    tangent = Polar(p.horizontal_radius, -90 * deg, Facing.TANGENT, p.horizontal_height)
-    poles = Polar(p.pole_radius, 90 * deg, Facing.TANGENT, p.pole_height, turn=p.vertical_turn)
+    tangent = Polar(p.horizontal_radius, -90 * deg, InstanceOrientation.TANGENT, p.horizontal_height)
+    poles = Polar(p.pole_radius, 90 * deg, InstanceOrientation.TANGENT, p.pole_height, turn=p.vertical_turn)
     return Mechanism(
         name=p.name,
         materials={"steel": STEEL},
@@ -236,7 +236,7 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
         gauges=_gauges(p),
         damping=ModalDamping(0.01),
         envelope=(380 * mm, 380 * mm, 115 * mm),
-        opening=Opening((110 * mm, 110 * mm)),
+        opening=Aperture((110 * mm, 110 * mm)),
         max_mode_frequency=1 * kHz,
         requirements=REQUIREMENTS,
         tags=_tags(p),
@@ -259,11 +259,11 @@ def _plate(plate: Plate) -> dict[str, Block]:
 
 
 def _gauges(p: DoubleTriangle) -> dict[str, Probe]:
-    level = Polar(p.gauge_radius, -90 * deg, Facing.TANGENT, p.gauge_height)
-    upright = Polar(p.gauge_radius, 90 * deg, Facing.AXIS, p.gauge_height)
+    level = Polar(p.gauge_radius, -90 * deg, InstanceOrientation.TANGENT, p.gauge_height)
+    upright = Polar(p.gauge_radius, 90 * deg, InstanceOrientation.AXIS, p.gauge_height)
     return {
-        "S1-S3": Probe("C36", "platform", level, Positive.OPENS),
-        "S4-S6": Probe("C36", "platform", upright, Positive.OPENS),
+        "S1-S3": Probe("C36", "platform", level, SensorSense.OPENS),
+        "S4-S6": Probe("C36", "platform", upright, SensorSense.OPENS),
     }
 
 

@@ -17,10 +17,10 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
 from flexstage.base.units.scale import deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SOURCES, STEEL, STRONG_STACK, stock_tags
 from flexstage.cases.strut import Strut
-from flexstage.mechanism.assembly.pattern import Facing, Polar
-from flexstage.mechanism.mechanism import Mechanism, ModalDamping, Opening, Placement, Probe, Unit
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
+from flexstage.mechanism.mechanism import Aperture, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.parts.body import Body, Cylinder
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular
@@ -56,7 +56,7 @@ def hexapod(parameters: Hexapod | None = None) -> Mechanism:
     ['A1-A3', 'B1-B3']
     """
     p = Hexapod() if parameters is None else parameters
-    around = Polar(p.head_radius, 90 * deg, Facing.OUTWARD)
+    around = Polar(p.head_radius, 90 * deg, InstanceOrientation.OUTWARD)
     disc = Cylinder("aluminium", p.diameter, p.thickness, (0.0, 0.0, p.rise + 0.5 * p.thickness), bore=p.bore)
     return Mechanism(
         name="hexapod",
@@ -69,7 +69,7 @@ def hexapod(parameters: Hexapod | None = None) -> Mechanism:
         gauges=_gauges(p),
         damping=ModalDamping(0.01),
         envelope=(200 * mm, 200 * mm, 70 * mm),
-        opening=Opening((40 * mm, 40 * mm)),
+        opening=Aperture((40 * mm, 40 * mm)),
         max_mode_frequency=5 * kHz,
         requirements=REQUIREMENTS,
         tags=stock_tags(("aluminium", "steel"), ("stack",), ("probe",)),
@@ -94,9 +94,9 @@ def _strut(p: Hexapod, side: float) -> Unit:
 
 def _gauges(p: Hexapod) -> dict[str, Probe]:
     middle = p.rise + 0.5 * p.thickness
-    level = Polar(0.5 * p.diameter, -90 * deg, Facing.TANGENT, middle)
-    upright = Polar(0.4 * p.diameter, 90 * deg, Facing.AXIS, p.rise)
+    level = Polar(0.5 * p.diameter, -90 * deg, InstanceOrientation.TANGENT, middle)
+    upright = Polar(0.4 * p.diameter, 90 * deg, InstanceOrientation.AXIS, p.rise)
     return {
-        "S1-S3": Probe("probe", "platform", level, Positive.OPENS),
-        "S4-S6": Probe("probe", "platform", upright, Positive.OPENS),
+        "S1-S3": Probe("probe", "platform", level, SensorSense.OPENS),
+        "S4-S6": Probe("probe", "platform", upright, SensorSense.OPENS),
     }

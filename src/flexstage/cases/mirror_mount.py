@@ -17,7 +17,7 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, MASS, POSITIVE
 from flexstage.base.units.scale import GPa, MPa, deg, kHz, mm
 from flexstage.cases.bipod import Bipod
 from flexstage.cases.stock import SOURCES
-from flexstage.mechanism.assembly.pattern import Facing, Polar
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, ModalDamping, Placement, Unit
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf
@@ -63,7 +63,7 @@ def mirror_mount(parameters: MirrorMount | None = None) -> Mechanism:
         parts={"blade": p.blade},
         bodies={PLATFORM: mirror},
         units={"bipod": Unit(bipod.bodies(), bipod.links())},
-        placements={"B1-B3": Placement("bipod", Polar(p.radius, 90 * deg, Facing.OUTWARD))},
+        placements={"B1-B3": Placement("bipod", Polar(p.radius, 90 * deg, InstanceOrientation.OUTWARD))},
         damping=ModalDamping(0.01),
         envelope=(1000 * mm, 1000 * mm, 300 * mm),
         max_mode_frequency=1 * kHz,

@@ -19,7 +19,7 @@ from flexstage.cases.strut import Strut
 from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe
 from flexstage.parts.body import Block, Body
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
@@ -63,7 +63,7 @@ def parallelogram(parameters: Parallelogram | None = None) -> Mechanism:
         units={"drive": strut.unit()},
         placements={"B": Placement("drive", Pose())},
         sensors={"probe": GAUGE},
-        gauges={"S": Probe("probe", "platform", Pose((0.5 * p.size[0], 0.0, 0.0), along=X), Positive.OPENS)},
+        gauges={"S": Probe("probe", "platform", Pose((0.5 * p.size[0], 0.0, 0.0), along=X), SensorSense.OPENS)},
         damping=ModalDamping(0.01),
         envelope=(160 * mm, 80 * mm, 25 * mm),
         max_mode_frequency=10 * kHz,

@@ -16,7 +16,7 @@ from flexstage.base.number import Number
 from flexstage.base.units.quantity import LENGTH, MASS, POSITIVE
 from flexstage.base.units.scale import GPa, X, deg, kHz, mm
 from flexstage.cases.bipod import SIDES, Bipod
-from flexstage.mechanism.assembly.pattern import Facing, Polar
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
 from flexstage.mechanism.mechanism import PLATFORM, Link, Mechanism, ModalDamping, Placement, Unit
 from flexstage.parts.body import Body, Inertia, Payload
 from flexstage.parts.leaf import Leaf, LeafSection
@@ -77,8 +77,8 @@ def telescope_mount(parameters: TelescopeMount | None = None) -> Mechanism:
         payloads={"primary": Payload(PLATFORM, p.primary, (0.0, 0.0, p.primary_height), point=True), "bars": _bars(p)},
         units={"bipod": _bipod(p), "strut": _strut(p)},
         placements={
-            "B1-B3": Placement("bipod", Polar(p.radius, 180 * deg, Facing.OUTWARD)),
-            "S1-S3": Placement("strut", Polar(0.0, 180 * deg, Facing.OUTWARD)),
+            "B1-B3": Placement("bipod", Polar(p.radius, 180 * deg, InstanceOrientation.OUTWARD)),
+            "S1-S3": Placement("strut", Polar(0.0, 180 * deg, InstanceOrientation.OUTWARD)),
         },
         damping=ModalDamping(0.01),
         envelope=(400 * mm, 400 * mm, 540 * mm),

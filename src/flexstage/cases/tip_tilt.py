@@ -15,10 +15,10 @@ from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.base.units.scale import X, Y, Z, deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, GLASS_CERAMIC, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
-from flexstage.mechanism.assembly.pattern import Facing, Polar
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body, Cylinder
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
@@ -66,12 +66,17 @@ def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
         bodies={"platform": _platform(p)},
         units={"post": strut.unit(), "leaf": _leaf(p)},
         placements={
-            f"P1-P{p.posts}": Placement("post", Polar(p.post_radius, 90 * deg, Facing.OUTWARD)),
-            "L1-L3": Placement("leaf", Polar(p.leaf_radius, 30 * deg, Facing.TANGENT)),
+            f"P1-P{p.posts}": Placement("post", Polar(p.post_radius, 90 * deg, InstanceOrientation.OUTWARD)),
+            "L1-L3": Placement("leaf", Polar(p.leaf_radius, 30 * deg, InstanceOrientation.TANGENT)),
         },
         sensors={"probe": GAUGE},
         gauges={
-            "S1-S3": Probe("probe", "platform", Polar(0.45 * p.holder, 90 * deg, Facing.AXIS, -0.5 * p.holder_thickness), Positive.OPENS)
+            "S1-S3": Probe(
+                "probe",
+                "platform",
+                Polar(0.45 * p.holder, 90 * deg, InstanceOrientation.AXIS, -0.5 * p.holder_thickness),
+                SensorSense.OPENS,
+            )
         },
         damping=ModalDamping(0.01),
         envelope=(100 * mm, 100 * mm, 80 * mm),

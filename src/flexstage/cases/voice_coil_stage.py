@@ -15,7 +15,7 @@ from flexstage.base.number import Number
 from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.base.units.scale import X, Z, deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, COIL, SCALE, SOURCES, STEEL, stock_tags
-from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar, Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body
 from flexstage.parts.leaf import Leaf
@@ -55,7 +55,7 @@ def voice_coil_stage(parameters: VoiceCoilStage | None = None) -> Mechanism:
         bodies={PLATFORM: Body(solids={"block": Block("aluminium", p.size)}, points={"sample": (0.0, 0.0, 0.5 * p.size[2])})},
         links={"motor": Link((GROUND, PLATFORM), "coil", (-end, 0.0, 0.0), X)},
         units={"guide": _guide(p)},
-        placements={"G1-G2": Placement("guide", Polar(0.5 * p.size[1], 90 * deg, Facing.OUTWARD))},
+        placements={"G1-G2": Placement("guide", Polar(0.5 * p.size[1], 90 * deg, InstanceOrientation.OUTWARD))},
         sensors={"scale": SCALE},
         gauges={"S": Probe("scale", PLATFORM, Pose((end, 0.0, 0.0), along=X))},
         damping=ModalDamping(0.01),

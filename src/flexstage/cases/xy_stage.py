@@ -16,10 +16,10 @@ from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.base.units.scale import X, Z, deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
-from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar, Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body
-from flexstage.parts.gauge import Positive
+from flexstage.parts.gauge import SensorSense
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
@@ -58,10 +58,10 @@ def xy_stage(parameters: XYStage | None = None) -> Mechanism:
     ['A1-A2', 'P1-P2']
     """
     p = XYStage() if parameters is None else parameters
-    pushed = Polar(0.0, 180 * deg, Facing.INWARD, step=90 * deg)
+    pushed = Polar(0.0, 180 * deg, InstanceOrientation.INWARD, step=90 * deg)
     first = Placement("pushed", pushed) if p.driven == 2 else Placement("pushed", Pose())
     placed = {"A1-A2" if p.driven == 2 else "A1": first}
-    free = Polar(0.0, 0.0 if p.driven == 2 else -90 * deg, Facing.INWARD, step=90 * deg)
+    free = Polar(0.0, 0.0 if p.driven == 2 else -90 * deg, InstanceOrientation.INWARD, step=90 * deg)
     placed["P1-P2" if p.driven == 2 else "P1-P3"] = Placement("following", free)
     return Mechanism(
         name="xy stage" if p.driven == 2 else "xy stage, y floating",
@@ -71,7 +71,9 @@ def xy_stage(parameters: XYStage | None = None) -> Mechanism:
         units={"pushed": _pushed_unit(p), "following": _following(p)},
         placements=placed,
         sensors={"probe": GAUGE},
-        gauges={"S1-S2": Probe("probe", "platform", Polar(0.5 * p.edge, 0.0, Facing.OUTWARD, step=90 * deg), Positive.OPENS)},
+        gauges={
+            "S1-S2": Probe("probe", "platform", Polar(0.5 * p.edge, 0.0, InstanceOrientation.OUTWARD, step=90 * deg), SensorSense.OPENS)
+        },
         damping=ModalDamping(0.01),
         envelope=(280 * mm, 280 * mm, 15 * mm),
         max_mode_frequency=5 * kHz,

@@ -4,9 +4,9 @@ from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
     "systems.system": "System",
-    "plant_models.electronics": "AmplifierSettings GaugeSettings hardware",
+    "plant_models.electronics": "AmplifierSettings GaugeSettings sampling_chain",
     "plant_models.plants": "plant",
-    "systems.closed": "Cut loop",
+    "systems.closed": "LoopBreak loop",
     "robustness.stability": "verdict",
     "robustness.stability_margins": "margins",
     "noise": "noise_budget",
@@ -18,8 +18,8 @@ HOMES = {
     "controllers.prefilter": "Prefilter",
     "controllers.loops": "actuator_loops modal_loops platform_loops",
     "controllers.decentralised": "Decentralised",
-    "tuning.aim": "Aim",
-    "tuning.goal": "Goal",
+    "tuning.objective": "TuningObjective",
+    "tuning.spec": "TuningSpec",
     "trajectory.step": "Step",
     "trajectory.raster": "Raster",
     "trajectory.spiral": "Spiral",
@@ -38,7 +38,7 @@ HOMES = {
     "study.hardware.amplifiers": "ChargeSetup",
     "study.setup": (
         "AmplifierSetup ControllerSetup DampingSetup FileMotion Floor FollowSetup GaugeSetup GoalSetup HystereticStacks LoopNumbers "
-        "LoopSetup Motion NotchAt PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
+        "LoopSetup AxisAmplitudes NotchSetup PrefilterSetup RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
     ),
     "study.file": "load_setup",
     "study.compare": "compare_controllers",

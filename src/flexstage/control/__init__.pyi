@@ -1,5 +1,5 @@
 from flexstage.control.systems.closed import (
-    Cut as Cut,
+    LoopBreak as LoopBreak,
     loop as loop,
 )
 from flexstage.control.controllers.decentralised import (
@@ -28,7 +28,7 @@ from flexstage.control.controllers.resonant import (
 from flexstage.control.plant_models.electronics import (
     AmplifierSettings as AmplifierSettings,
     GaugeSettings as GaugeSettings,
-    hardware as hardware,
+    sampling_chain as sampling_chain,
 )
 from flexstage.control.systems.exchange import (
     from_control as from_control,
@@ -113,9 +113,9 @@ from flexstage.control.study.setup import (
     HystereticStacks as HystereticStacks,
     LoopNumbers as LoopNumbers,
     LoopSetup as LoopSetup,
-    Motion as Motion,
-    NotchAt as NotchAt,
-    PrefilterAt as PrefilterAt,
+    AxisAmplitudes as AxisAmplitudes,
+    NotchSetup as NotchSetup,
+    PrefilterSetup as PrefilterSetup,
     RasterMotion as RasterMotion,
     VibrationSetup as VibrationSetup,
     SineMotion as SineMotion,
@@ -146,11 +146,11 @@ from flexstage.control.trajectory.spiral import (
 from flexstage.control.trajectory.step import (
     Step as Step,
 )
-from flexstage.control.tuning.aim import (
-    Aim as Aim,
+from flexstage.control.tuning.objective import (
+    TuningObjective as TuningObjective,
 )
-from flexstage.control.tuning.goal import (
-    Goal as Goal,
+from flexstage.control.tuning.spec import (
+    TuningSpec as TuningSpec,
 )
 
 HOMES: dict[str, str]

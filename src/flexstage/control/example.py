@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.control.plant_models.electronics import Hardware, hardware
+from flexstage.control.plant_models.electronics import Hardware, sampling_chain
 from flexstage.control.plant_models.plants import Plant, plant
 from flexstage.control.systems.closed import Loop, loop
 from flexstage.control.systems.system import System
@@ -37,6 +37,6 @@ def integral_loop(gain: float = 100.0, given: Hardware | None = None) -> Loop:
     True
     """
     stage = parallelogram()
-    given = hardware(stage, rate=10e3, delay=50e-6) if given is None else given
+    given = sampling_chain(stage, rate=10e3, delay=50e-6) if given is None else given
     one = plant(lumped(stage), ideal(stage), given, modes=3)
     return loop(one, integral(one, gain))

@@ -103,7 +103,7 @@ def trajectory_setup(given: forms.TrajectorySetup, word: str | None, moves: Sequ
     if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
         name = found.TOLD_BY[1]
         raise refuse("--amplitude", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
-    return replace(found, amplitude=override(forms.Motion(), motions(moves, "--amplitude")))
+    return replace(found, amplitude=override(forms.AxisAmplitudes(), motions(moves, "--amplitude")))
 
 
 def _trajectory_of_name(word: str, given: forms.TrajectorySetup) -> forms.TrajectorySetup:

@@ -4,19 +4,19 @@ from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
     "records.record": "Channel Record Role in_memory",
-    "records.options": "Allow Arrays Kind Options",
+    "records.options": "Arrays FaultTolerance Kind Options",
     "formats.read": "read_record",
     "formats.write": "write_record",
-    "records.health": "Needs examine",
+    "records.health": "RecordRequirements examine",
     "spectral.cross_spectra": "Segments spectra",
     "spectral.transfer": "h1 h2",
     "identification.excitation": "Excitation",
     "identification.identify": "Search identify",
     "comparison": "compare",
     "updating.update": "update",
-    "updating.free": "Known",
+    "updating.free": "Prior",
     "virtual_rig.rig": "rig",
-    "virtual_rig.recorded": "Recorded Tap",
+    "virtual_rig.inputs": "InputQuantity InputSignal",
     "virtual_rig.setup": "Amplifier AntiAlias NoiseDrive RigSetup Sensing",
 }
 __getattr__, __dir__ = lazy_attributes(__name__, HOMES)

@@ -12,7 +12,7 @@ from flexstage.experiment.formats.write import (
     write_record as write_record,
 )
 from flexstage.experiment.records.health import (
-    Needs as Needs,
+    RecordRequirements as RecordRequirements,
     examine as examine,
 )
 from flexstage.experiment.identification.excitation import (
@@ -23,7 +23,7 @@ from flexstage.experiment.identification.identify import (
     identify as identify,
 )
 from flexstage.experiment.records.options import (
-    Allow as Allow,
+    FaultTolerance as FaultTolerance,
     Arrays as Arrays,
     Kind as Kind,
     Options as Options,
@@ -39,14 +39,14 @@ from flexstage.experiment.spectral.transfer import (
     h2 as h2,
 )
 from flexstage.experiment.updating.free import (
-    Known as Known,
+    Prior as Prior,
 )
 from flexstage.experiment.updating.update import (
     update as update,
 )
-from flexstage.experiment.virtual_rig.recorded import (
-    Recorded as Recorded,
-    Tap as Tap,
+from flexstage.experiment.virtual_rig.inputs import (
+    InputQuantity as InputQuantity,
+    InputSignal as InputSignal,
 )
 from flexstage.experiment.virtual_rig.rig import (
     rig as rig,

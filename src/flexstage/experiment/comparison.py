@@ -131,7 +131,7 @@ class Compared(InNotebook):
     model: Annotated[Model, INNER]
     experiment: Annotated[Identified, INNER]
     fea: Annotated[FeaModes | None, INNER]
-    warnings: tuple[str, ...]
+    data_warnings: tuple[str, ...]
     provenance: str
     misnamed: Annotated[tuple[str, ...], INNER] = ()
 
@@ -192,7 +192,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         model=model,
         experiment=experiment,
         fea=fea,
-        warnings=(*experiment.warnings, *(f"{each}." for each in misnamed), *_cautions(rows, repeated, sensors)),
+        data_warnings=(*experiment.data_warnings, *(f"{each}." for each in misnamed), *_warnings(rows, repeated, sensors)),
         misnamed=misnamed,
         provenance=f"{theory.provenance}; {experiment.provenance}",
     )
@@ -412,7 +412,7 @@ def _repeated_modes(group: list[int], pairs: dict[int, int], own: Array, seen: A
     return RepeatedModes(numbers, len(members), float(np.arccos(np.clip(cosines[-1], 0.0, 1.0))))
 
 
-def _cautions(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> list[str]:
+def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...], sensors: tuple[str, ...]) -> list[str]:
     found: list[str] = []
     if len(sensors) < len(rows):
         found.append(

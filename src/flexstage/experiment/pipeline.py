@@ -16,8 +16,8 @@ from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.outputs.unrecorded import identify_decay, identify_floor
-from flexstage.experiment.records.health import Needs, responses_findings, usable_record
-from flexstage.experiment.records.options import Allow
+from flexstage.experiment.records.health import RecordRequirements, responses_findings, usable_record
+from flexstage.experiment.records.options import FaultTolerance
 from flexstage.experiment.records.record import Record, Responses, report_reading
 from flexstage.experiment.spectral.cross_spectra import Spectra, Tell, pool, spectra
 from flexstage.experiment.spectral.transfer import h2, multiple_coherence, spectral_ratio
@@ -63,7 +63,10 @@ class Identification:
 
 
 def usable_measurement(
-    contents: Sequence[Record | Responses], allow: frozenset[Allow] = frozenset(), needs: Needs | None = None, told: Told | None = None
+    contents: Sequence[Record | Responses],
+    accept_faults: frozenset[FaultTolerance] = frozenset(),
+    requirements: RecordRequirements | None = None,
+    told: Told | None = None,
 ) -> Measurement:
     """What of the files' contents can be used together; raises `DesignError` with every fault that is not allowed.
 
@@ -73,17 +76,17 @@ def usable_measurement(
     >>> [each.duration for each in usable_measurement([one_mode_record()])]
     [64.0]
     """
-    wanted = needs if needs is not None else Needs()
+    wanted = requirements if requirements is not None else RecordRequirements()
     records = [each for each in contents if isinstance(each, Record)]
     responses = [each for each in contents if isinstance(each, Responses)]
     if responses:
         require(_mixed_kinds(contents))
-        return _sound_responses(responses[0], allow, wanted)
+        return _sound_responses(responses[0], accept_faults, wanted)
     findings: list[Finding] = []
     kept: list[Record] = []
     for index, record in enumerate(records):
         try:
-            kept.append(_sound_record(record, allow, wanted, _part_progress(told, index, len(records))))
+            kept.append(_sound_record(record, accept_faults, wanted, _part_progress(told, index, len(records))))
         except DesignError as error:
             findings += error.findings
     require(join_findings(findings))
@@ -123,21 +126,21 @@ def _without_inputs(test: Measurement, search: Search, tell: Tell | None) -> Ide
     return find(test, search, tell)
 
 
-def _sound_record(record: Record, allow: frozenset[Allow], needs: Needs, told: Told | None) -> Record:
+def _sound_record(record: Record, accept_faults: frozenset[FaultTolerance], requirements: RecordRequirements, told: Told | None) -> Record:
     """The usable part of the record itself, not of the one that tells how far it was read."""
     tell = _stage_progress(told, "looking at the record", 0.0, _LOOKED)
     seen = record if tell is None else report_reading(record, lambda stop: tell(stop / max(1, record.length)))
-    kept = usable_record(seen, allow, needs)
+    kept = usable_record(seen, accept_faults, requirements)
     first = round((kept.start - record.start) * record.rate)
     whole = kept.length == record.length
     chosen = record if kept.names == record.names else record.select(kept.names)
     return chosen if whole else chosen.part(first, first + kept.length)
 
 
-def _sound_responses(responses: Responses, allow: frozenset[Allow], needs: Needs) -> Responses:
-    faults = responses_findings(responses, needs)
-    require(fault.finding for fault in faults if fault.kind not in allow)
-    dropped = {fault.channel for fault in faults if fault.kind is Allow.NAMES}
+def _sound_responses(responses: Responses, accept_faults: frozenset[FaultTolerance], requirements: RecordRequirements) -> Responses:
+    faults = responses_findings(responses, requirements)
+    require(fault.finding for fault in faults if fault.kind not in accept_faults)
+    dropped = {fault.channel for fault in faults if fault.kind is FaultTolerance.NAMES}
     if responses.coherence is not None:
         responses = replace(responses, coherence=np.clip(np.nan_to_num(responses.coherence), 0.0, 1.0))
     if not dropped:

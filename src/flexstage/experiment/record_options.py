@@ -17,7 +17,7 @@ from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import Identification, identification, usable_measurement
 from flexstage.experiment.records import options
-from flexstage.experiment.records.health import Needs
+from flexstage.experiment.records.health import RecordRequirements
 from flexstage.experiment.records.record import Record, Responses
 from flexstage.experiment.shapes_on_stage import StageShapes, stage_shapes
 from flexstage.experiment.spectral.cross_spectra import Segments
@@ -100,7 +100,7 @@ class RecordTexts:
         """The options of the reader; raises `DesignError` with all that is wrong with them."""
         findings: list[Finding] = []
         units = _units(self.units, findings)
-        accepted = [_word("--accept-fault", word, options.Allow, findings) for word in names(self.accept_fault)]
+        accepted = [_word("--accept-fault", word, options.FaultTolerance, findings) for word in names(self.accept_fault)]
         kind = None if self.kind is None else _word("--kind", self.kind, options.Kind, findings)
         arrays = _arrays(self.arrays, findings)
         require(findings)
@@ -112,7 +112,7 @@ class RecordTexts:
             units=units,
             kind=None if kind is None else options.Kind(kind),
             arrays=arrays,
-            allow=frozenset(options.Allow(word) for word in accepted if word is not None),
+            accept_faults=frozenset(options.FaultTolerance(word) for word in accepted if word is not None),
         )
 
     def require_unsaid(self) -> None:
@@ -129,12 +129,12 @@ class RecordTexts:
         moved = self.excitation or Excitation.RECORDED
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
 
-    def needs(self, model: LinearModel | None, highest: float | None = None) -> Needs:
+    def requirements(self, model: LinearModel | None, highest: float | None = None) -> RecordRequirements:
         """What is asked of records: outputs of the stage where there is one, a rate for the highest mode or the band, the resolution."""
         top = _hertz("--band", self.band[1]) if self.band is not None else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
         unrecorded = self.excitation not in (None, Excitation.RECORDED)
-        return Needs(resolution=self._resolution(), highest=top, outputs=outputs, unrecorded=unrecorded)
+        return RecordRequirements(resolution=self._resolution(), highest=top, outputs=outputs, unrecorded=unrecorded)
 
     def _resolution(self) -> float | None:
         return None if self.frequency_resolution is None else _hertz("--frequency-resolution", self.frequency_resolution)
@@ -154,13 +154,13 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """The modes of the records, each caution told; with the model of the stage and its `highest` mode [Hz] where they are known."""
-    reader, search, needs = texts.options(), texts.search(), texts.needs(model, highest)
+    """The modes of the records, each warning told; with the model of the stage and its `highest` mode [Hz] where they are known."""
+    reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown:
-        test = usable_measurement(open_records(paths, reader), reader.allow, needs, shown.share)
+        test = usable_measurement(open_records(paths, reader), reader.accept_faults, needs, shown.share)
         seen = identification(test, search, shown.share)
-    for caution in seen.found.warnings:
-        print_warning(caution)
+    for warning in seen.found.data_warnings:
+        print_warning(warning)
     return seen
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from flexstage.base.finding import Finding, require
 from flexstage.mechanism.assembly.expand import PlacedLink
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.parts.given import Given, Origin
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Origin
 from flexstage.parts.part import Restricted, material_of
 
 
@@ -20,7 +20,7 @@ def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
     >>> with_drawn_parts(double_triangle()) == double_triangle()
     True
     """
-    stand_ins = {name: part.replaces for name, part in mechanism.parts.items() if isinstance(part, Given) and part.replaces}
+    stand_ins = {name: part.replaces for name, part in mechanism.parts.items() if isinstance(part, ComplianceMatrix) and part.replaces}
     require(
         Finding(f"parts.{name}.replaces", f'there is no part "{kept}"', "Keep the drawn part that was calibrated in the file")
         for name, kept in stand_ins.items()
@@ -41,7 +41,7 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
     True
     """
     inner = link.part.part if isinstance(link.part, Restricted) else link.part
-    kept = mechanism.parts.get(inner.replaces) if isinstance(inner, Given) else None
+    kept = mechanism.parts.get(inner.replaces) if isinstance(inner, ComplianceMatrix) else None
     if kept is None:
         return link
     material = material_of(kept)
@@ -55,4 +55,4 @@ def calibrated_parts(mechanism: Mechanism) -> tuple[str, ...]:
     >>> calibrated_parts(double_triangle())
     ()
     """
-    return tuple(name for name, part in mechanism.parts.items() if isinstance(part, Given) and part.origin is Origin.FEA)
+    return tuple(name for name, part in mechanism.parts.items() if isinstance(part, ComplianceMatrix) and part.origin is Origin.FEA)

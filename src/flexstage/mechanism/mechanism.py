@@ -27,7 +27,7 @@ from flexstage.base.units.quantity import (
 from flexstage.mechanism.assembly.pattern import ORIGIN, Pattern, between, middle
 from flexstage.parts.body import Body, Payload
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.gauge import Instrument, Positive
+from flexstage.parts.gauge import Instrument, SensorSense
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part
 
@@ -132,7 +132,7 @@ class Probe(Description):
     gauge: str
     body: str
     pattern: Pattern
-    positive: Positive | None = None
+    positive: SensorSense | None = None
     base: str = GROUND
 
 
@@ -223,8 +223,8 @@ Damping: TypeAlias = ModalDamping | StructuralDamping | RayleighDamping
 
 
 @dataclass(frozen=True, eq=False)
-class Opening(Description):
-    """A clear opening through the stage along z that nothing may enter: a rectangle (size x, size y) about the z axis."""
+class Aperture(Description):
+    """Clear aperture through the stage along z that nothing may enter: a rectangle (size x, size y) about the z axis."""
 
     size: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]]
 
@@ -260,7 +260,7 @@ class Mechanism(InNotebook, Description):
     envelope: (
         tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]] | None
     ) = None
-    opening: Opening | None = None
+    opening: Aperture | None = None
     max_mode_frequency: Annotated[Number, FREQUENCY, POSITIVE] | None = None
     ground: str | None = None
     overrides: Mapping[str, Any] = _empty()

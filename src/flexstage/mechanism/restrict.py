@@ -12,8 +12,8 @@ from flexstage.mechanism.assembly.likeness import ancestry, drawn_units, link_li
 from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement
 from flexstage.parts.body import Body, owner_of
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.part import Part, Restricted
 
 Freedoms = tuple[Freedom, ...]

@@ -27,8 +27,8 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.elimination import null_space
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import Channel, Contribution, LinearModel
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import ALL, Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted, actuator_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame, transport
 

@@ -3,6 +3,7 @@
 from flexstage.base.register import Register
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.cartwheel import Cartwheel
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.contact import Contact
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.cruciform import Cruciform
@@ -10,7 +11,6 @@ from flexstage.parts.encoder import Encoder
 from flexstage.parts.folded_leaf import FoldedLeaf
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.gauge import Gauge, Instrument
-from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.membrane import Membrane
 from flexstage.parts.neck import Neck
@@ -31,7 +31,8 @@ _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
 _ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil)
 _GAUGES = (Gauge, Tilt, Encoder, StrainGauge)
 PARTS: Register[type[Elastic]] = Register(
-    "flexstage.parts", {part.kind: part for part in (*_HINGES, Membrane, Given, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)}
+    "flexstage.parts",
+    {part.kind: part for part in (*_HINGES, Membrane, ComplianceMatrix, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)},
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 

@@ -15,8 +15,8 @@ from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY
 from flexstage.parts.freedom import ROTATIONS, Freedom
 
 
-class Positive(Enum):
-    """What makes a gauge's reading grow: the gap opens or the gap closes."""
+class SensorSense(Enum):
+    """Sense of a displacement sensor: its reading grows as the gap opens, or as it closes."""
 
     OPENS = "opens"
     CLOSES = "closes"

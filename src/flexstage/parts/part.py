@@ -10,8 +10,8 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Number
 from flexstage.base.storage.digest import Description
 from flexstage.parts.actuator import Actuator
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.shape import Elastic, Shaped
 from flexstage.parts.superelement import Port
 

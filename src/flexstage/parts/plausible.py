@@ -1,6 +1,6 @@
 """Plausibility: the range in which the numbers of real materials, stacks, gauges and hinges lie, and where that range is from.
 
-One table. A value outside is a caution, never refused: most often its unit has slipped.
+One table. A value outside is a warning, never refused: most often its unit has slipped.
 """
 
 from __future__ import annotations

@@ -15,8 +15,8 @@ from flexstage.base.number import Array
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.paths.critical import Kind
-from flexstage.models.nonlinear.paths.path import Path
+from flexstage.models.nonlinear.paths.critical_load import Kind
+from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.show.display import format_value, to_typography
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.stroke import stroke_figure
@@ -25,7 +25,7 @@ from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, make_table, matrix_table, number_cells
-from flexstage.show.viewer.course import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
+from flexstage.show.viewer.animation import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -35,7 +35,7 @@ _MEANING = {
 }
 
 
-def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
+def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
     """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
     seen, data = scene(mechanism), stroke_data(mechanism, path, found)
     said = limits(found)
@@ -47,7 +47,7 @@ def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
             seen, motion=f"path {path.drive}", said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."
         ),
         section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
         drawing_section(mechanism, seen),
     )
@@ -88,7 +88,7 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | No
         stage_section(seen, motion="state buckling", said=moves) if known else stage_section(seen),
         section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
         None if after is None else _beyond_section(after.stroke),
-        caveat_section(mechanism, found.cautions if after is None else (*found.cautions, *after.stroke.cautions)),
+        caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
         drawing_section(mechanism, seen),
     )
     good = least is None or least.factor >= max(1.0, found.demand)
@@ -120,7 +120,7 @@ def _buckling_text(found: CaseFactors) -> str:
 def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table]:
     """Load cases and stroke ends with their factors; how the least gives way, and equilibria `after` that."""
     heads = ["load", "place", Column("factor"), "kind", "gives way"]
-    rows = [[case.load, case.place, _factor_text(case), case.kind, case.gives_way or case.why] for case in found.cases]
+    rows = [[case.load, case.place, _factor_text(case), case.kind, case.buckling_mode or case.why] for case in found.cases]
     note = "Each load by itself, all else stays, the place too, where the stage counts as free under the force that brings it there."
     table = make_table("Load cases and stroke ends", heads, rows, notes=[note])
     least = found.least
@@ -158,7 +158,7 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     sections = (
         _misaligned_stage(seen, data),
         _misaligned_curves(found),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         section("Point by point", misaligned_tables(found)),
         drawing_section(mechanism, seen),
     )
@@ -202,7 +202,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
         stage_section(seen) if worst is None else _misaligned_stage(seen, data),
         section("Copy by copy", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         None if worst is None else section("The worst, point by point", misaligned_tables(worst)),
         drawing_section(mechanism, seen),
     )

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from flexstage.analysis.assessment.requirements import Verdict
-from flexstage.analysis.cautions import Caveats, caveats
+from flexstage.analysis.caveats import Caveats, caveats
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.linear_statics.deflection import Deflection
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix
@@ -20,7 +20,7 @@ from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, Rayl
 from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
 
-FORMAT = "flexstage result 2"
+FORMAT = "flexstage result 3"
 _UNLUMPED = "deflection under dead load needs the lumped model"
 _UNSORTED = "it is told of platforms with fewer than six ideal motions, loaded at the point of theirs that is read"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
@@ -30,7 +30,7 @@ _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "
 def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
     """A document: what it is, of which description (absent: of a record alone), by which model and version, caveats, then its `body`.
 
-    `body` is a result, or a mapping with results in it. `more` are cautions of the result's own.
+    `body` is a result, or a mapping with results in it. `more` are warnings of the result's own.
 
     >>> envelope("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
     'stage'
@@ -43,7 +43,7 @@ def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: 
         "name": None if mechanism is None else mechanism.name,
         "model": None if model is None else model.value,
         "physics_digest": None if mechanism is None else digest(mechanism, physics=True),
-        "cautions": [*known.cautions, *more],
+        "warnings": [*known.warnings, *more],
         "defaults": list(known.defaults),
         **walk(body),
     }
@@ -56,11 +56,10 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
     False
     """
     found = list(errors)
-    body: Document = {"sound": not found, "findings": found}
+    body: Document = {"sound": not found, "errors": found}
     if mechanism is None:
-        return {"format": FORMAT, "kind": "check", "version": __version__, **body, "cautions": [], "defaults": [], "warnings": []}
-    document = envelope("check", mechanism, None, body)
-    return {**document, "warnings": document["cautions"]}
+        return {"format": FORMAT, "kind": "check", "version": __version__, **body, "warnings": [], "defaults": []}
+    return envelope("check", mechanism, None, body)
 
 
 def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
@@ -76,7 +75,7 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         "response": None if analysis.response is None else response_body(analysis.response, damping),
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": analysis.workspace,
-        **({} if analysis.reach is None else {"reach": analysis.reach}),
+        **({} if analysis.force_workspace is None else {"force_workspace": analysis.force_workspace}),
         "buckling": analysis.buckling,
         **({} if analysis.ends is None else {"ends": analysis.ends}),
         "drift": analysis.drift,

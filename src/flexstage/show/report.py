@@ -41,7 +41,7 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     sections = (
         stage_section(seen, motion=first_motion(data)),
         requirement_section(analysis),
-        caveat_section(mechanism, () if analysis.ends is None else analysis.ends.cautions),
+        caveat_section(mechanism, () if analysis.ends is None else analysis.ends.warnings),
         change_section(analysis, compared),
         summary_section(analysis),
         drawing_section(mechanism, seen),

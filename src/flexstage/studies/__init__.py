@@ -7,7 +7,7 @@ HOMES = {
     "sweeps.file": "load_study",
     "sweeps.execution.run": "Run sweep",
     "sweeps.execution.store": "read_results",
-    "optimisation.file": "load_wanted",
+    "optimisation.file": "load_optimisation",
     "optimisation.search.optimum": "optimise",
     "optimisation.search.front": "pareto_front",
     "tolerances.file": "load_tolerance",

@@ -1,5 +1,5 @@
 from flexstage.studies.optimisation.file import (
-    load_wanted as load_wanted,
+    load_optimisation as load_optimisation,
 )
 from flexstage.studies.optimisation.search.front import (
     pareto_front as pareto_front,

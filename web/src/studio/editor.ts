@@ -83,7 +83,7 @@ export class Editor {
     studio.state.watch((state) => state && this.take(state));
     for (const each of [studio.figures, studio.verdicts]) each.watch(() => this.judge());
     studio.connection.state.watch((link) => (this.isBack = link === "open" && !this.isOurs));
-    studio.connection.on("cautions", (said) => this.warn(said.revision, said.cautions));
+    studio.connection.on("warnings", (said) => this.warn(said.revision, said.warnings));
     studio.line.watch(({ line, focus }) => this.goto(line, focus));
   }
 
@@ -155,7 +155,7 @@ export class Editor {
   }
 
   private mark(state: State): void {
-    const found: [Problem, Diagnostic["severity"]][] = [...state.problems.map((each) => [each, "error"] as [Problem, "error"]), ...state.cautions.map((each) => [each, "warning"] as [Problem, "warning"])];
+    const found: [Problem, Diagnostic["severity"]][] = [...state.problems.map((each) => [each, "error"] as [Problem, "error"]), ...state.warnings.map((each) => [each, "warning"] as [Problem, "warning"])];
     this.view.dispatch(setDiagnostics(this.view.state, found.filter(([each]) => each.line !== null).map(([each, severity]) => this.diagnostic(each, severity))));
     fill(this.problems, ...found.map(([each, severity]) => this.item(each, severity)));
     this.judge();
@@ -174,9 +174,9 @@ export class Editor {
     document.body.classList.toggle("unsound", !sound);
   }
 
-  private warn(revision: number, cautions: Problem[]): void {
+  private warn(revision: number, warnings: Problem[]): void {
     const { value: state } = this.studio.state;
-    if (state?.revision === revision && state.sound) this.mark({ ...state, cautions });
+    if (state?.revision === revision && state.sound) this.mark({ ...state, warnings });
   }
 
   private diagnostic(each: Problem, severity: Diagnostic["severity"]): Diagnostic {

@@ -92,7 +92,7 @@ export class Travel {
     this.studio.mode.set(null);
     this.motions = said.motions as Motion[];
     this.revision = said.revision;
-    fill(this.about, ...said.cautions.map((each) => h("span", { className: "fair" }, `${each.where}: ${sentence(each)}`)));
+    fill(this.about, ...said.warnings.map((each) => h("span", { className: "fair" }, `${each.where}: ${sentence(each)}`)));
     this.shapes.replaceChildren(...this.motions.map((each) => new Option([each.label, each.remark].filter(Boolean).join("  "), `${each.group} ${each.name}`)));
     if (!viewer?.alive || !scene) return;
     fill(this.curves, viewer.curves);

@@ -9,7 +9,7 @@ import type { StageData } from "./types";
 import { floats, indices, numbers } from "./unpack";
 
 const WIDTH = 512;
-/** Places along what bends at which a pose tells where it lies; `NODES` in show/viewer/course.py, and in the shader. */
+/** Places along what bends at which a pose tells where it lies; `NODES` in show/viewer/animation.py, and in the shader. */
 const NODES = 12;
 
 /** A table of rows of four floats, laid out in lines of a texture. */

@@ -149,7 +149,7 @@ def loss_figures(found: LostMotion | None) -> Iterator[KeyFigure]:
 
 def _workspace_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
     if reach is not None:
-        yield from reach_figures(reach.single if reach.corrected is None else reach.corrected, reach.stress, reach.buckling)
+        yield from reach_figures(reach.single_axis if reach.corrected is None else reach.corrected, reach.stress, reach.buckling)
 
 
 def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckling: Buckling | None) -> Iterator[KeyFigure]:
@@ -158,6 +158,6 @@ def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckli
         for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
             yield KeyFigure(f"stroke.{name}", TWIST_UNITS[COMPONENTS.index(name)], float(value))
     if stress is not None and stress.links:
-        yield KeyFigure("safety", "1", float(stress.least))
+        yield KeyFigure("safety", "1", float(stress.min_safety))
     if buckling is not None and buckling.links:
-        yield KeyFigure("buckling", "1", float(buckling.least))
+        yield KeyFigure("buckling", "1", float(buckling.min_factor))

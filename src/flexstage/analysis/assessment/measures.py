@@ -14,8 +14,8 @@ import numpy as np
 from flexstage.analysis.bench import KEPT, Bench
 from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
+from flexstage.analysis.workspace.force_workspace import bounds_along
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
-from flexstage.analysis.workspace.reach import bounds_along
 from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.stroke import utilisation
 from flexstage.base.finding import LowerBoundError, refuse, require
@@ -49,10 +49,9 @@ from flexstage.spatial.frame import COMPONENTS, transport
 if TYPE_CHECKING:
     from flexstage.analysis.loaded import load_cases as cases
     from flexstage.models.nonlinear import state
-    from flexstage.models.nonlinear.paths import critical
 else:
     cases = Late("flexstage.analysis.loaded.load_cases")
-    critical = Late("flexstage.models.nonlinear.paths.critical")
+    critical_load = Late("flexstage.models.nonlinear.paths.critical_load")
     state = Late("flexstage.models.nonlinear.state")
 
 ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
@@ -140,7 +139,7 @@ def stroke(bench: Bench, asked: Measure) -> Array:
     How far each actuator and stop lets the platform go, either way; where forces move it, how far each of their limits does, held for ever.
     """
     if bench.forced:
-        return bounds_along(bench.reach(asked.point), asked.name)
+        return bounds_along(bench.force_workspace(asked.point), asked.name)
     mapping, limits = bench.stopped(asked.point)
     if asked.name not in mapping.columns:
         raise refuse(f"stroke.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
@@ -191,7 +190,7 @@ def safety(bench: Bench, _: Measure) -> Array:
 @partial(MeasureKind, "buckling", RATIO, over_strokes=True)
 def buckling(bench: Bench, _: Measure) -> Array:
     """Critical load over compression in the worst part at the worst corner of the strokes."""
-    return bench.buckling.least
+    return bench.buckling.min_factor
 
 
 @partial(MeasureKind, "stiffness.<axis>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
@@ -252,7 +251,7 @@ def force(bench: Bench, asked: Measure) -> Array:
     Where forces move it: how far they do, held for ever, times its stiffness there.
     """
     if bench.forced:
-        bounds = np.min(bounds_along(bench.reach(PLATFORM), asked.name), axis=-1)
+        bounds = np.min(bounds_along(bench.force_workspace(PLATFORM), asked.name), axis=-1)
         return bounds * stiffness.work(bench, asked)
     lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
     if asked.name not in lines.coordinates:
@@ -296,7 +295,7 @@ def heating(bench: Bench, asked: Measure) -> Array:
 
 def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, VoiceCoil]]:
     """The currents (..., c) of all coils that hold the required stroke along an axis, and the coils."""
-    found = bench.reach(PLATFORM)
+    found = bench.force_workspace(PLATFORM)
     coils = {name: part for name in bench.assembly.thrusts if isinstance(part := bench.assembly.actuator(name), VoiceCoil)}
     if not coils or asked.name not in found.coordinates:
         raise refuse(asked.key, "no coil moves this stage along it", f"Its ideal motions are {', '.join(found.coordinates)}")
@@ -543,7 +542,7 @@ def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
     for case in load_cases:
         try:
             factor, error = cases.case_critical(bench.nonlinear, case, tolerance=1e-9).factor, None  # slopes are taken of it
-        except critical.NothingGivesWayError:
+        except critical_load.NothingGivesWayError:
             continue
         except LowerBoundError as found:
             factor, error = found.bound, found

@@ -27,7 +27,7 @@ from flexstage.mechanism.assembly.incidence import deformation, layout
 from flexstage.mechanism.assembly.sight import Sight
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.model import Contribution, LinearModel
-from flexstage.parts.given import Joint
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.part import Restricted
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, cross_matrix, spatial_rotation, transport
 

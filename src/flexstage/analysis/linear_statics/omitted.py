@@ -13,8 +13,8 @@ from flexstage.mechanism.restrict import Freedoms, restrict
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import Masses, lumped, variants
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import ALL, Freedom
-from flexstage.parts.given import Joint
 
 Restrictions = Mapping[str, tuple[Freedoms, Freedoms]]
 

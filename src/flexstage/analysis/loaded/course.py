@@ -20,16 +20,16 @@ from flexstage.models.nonlinear.state import Status
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 if TYPE_CHECKING:
-    from flexstage.analysis.loaded import stance
+    from flexstage.analysis.loaded import operating_point
     from flexstage.analysis.loaded import stroke as strokes
     from flexstage.models.nonlinear import equilibrium
     from flexstage.models.nonlinear import stage as nonlinear
-    from flexstage.models.nonlinear.paths import path as paths
+    from flexstage.models.nonlinear.paths import load_path as paths
 else:
-    stance = Late("flexstage.analysis.loaded.stance")
+    operating_point = Late("flexstage.analysis.loaded.operating_point")
     strokes = Late("flexstage.analysis.loaded.stroke")
     equilibrium = Late("flexstage.models.nonlinear.equilibrium")
-    paths = Late("flexstage.models.nonlinear.paths.path")
+    paths = Late("flexstage.models.nonlinear.paths.load_path")
     nonlinear = Late("flexstage.models.nonlinear.stage")
 
 _SWITCH = {"on": 1.0, "off": 0.0}
@@ -52,10 +52,10 @@ class Course:
         """Where the stage rests. Raises `DesignError` where it does not."""
         return _resting(equilibrium.equilibrium(model, self.loads, weight=self.weight))
 
-    def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.Path:
+    def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.LoadPath:
         """Equilibria along it, or at other values of its drive."""
         wanted, hold = self._wanted(model, rest, values)
-        found = paths.path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        found = paths.load_path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
         _require_continuation(found.state)
         return found
 
@@ -63,8 +63,8 @@ class Course:
         """Values of the drive, counted from where it is drawn, and what stays locked where."""
         wanted = self.values if values is None else values
         driven = self.drive in {channel.name for channel in model.inputs}
-        start = 0.0 if driven else float(stance.coordinate(rest, self.drive))
-        return start + wanted, {name: float(stance.coordinate(rest, name)) for name in self.locked}
+        start = 0.0 if driven else float(operating_point.coordinate(rest, self.drive))
+        return start + wanted, {name: float(operating_point.coordinate(rest, name)) for name in self.locked}
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
         """The points of its stroke, of which single columns may be asked."""

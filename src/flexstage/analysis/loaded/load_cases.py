@@ -9,10 +9,10 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.loaded.course import course
+from flexstage.analysis.loaded.operating_point import coordinate
 from flexstage.analysis.loaded.stability import give_way
-from flexstage.analysis.loaded.stance import coordinate
 from flexstage.analysis.loaded.standing import drawn, load_factors
-from flexstage.analysis.workspace.reach import input_limits
+from flexstage.analysis.workspace.force_workspace import input_limits
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, LowerBoundError, refuse
 from flexstage.base.notebook import InNotebook
@@ -23,7 +23,13 @@ from flexstage.base.units.unit import quantity_of_unit, show
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
-from flexstage.models.nonlinear.paths.critical import Critical, NothingGivesWayError, critical, require_continuation, unstable_motions
+from flexstage.models.nonlinear.paths.critical_load import (
+    Critical,
+    NothingGivesWayError,
+    critical_load,
+    require_continuation,
+    unstable_motions,
+)
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import STATED, WEIGHT
 from flexstage.parts.part import push_of
@@ -68,7 +74,7 @@ class LoadCase(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class CaseFactor:
-    """How many times its `load` the stage bears at a `place`, all else staying, of which `kind` the end is, and what `gives_way`.
+    """How many times its `load` the stage bears at a `place`, all else staying, of which `kind` the end is, and the `buckling_mode`.
 
     `factor` is infinite where nothing gives way up to the largest factor, NaN where it is not known; `why` gives the reason. `bound` is the
     factor up to which the stage is stable, NaN where that is not known.
@@ -78,7 +84,7 @@ class CaseFactor:
     place: str
     factor: Annotated[float, RATIO]
     kind: str
-    gives_way: str
+    buckling_mode: str
     why: str
     bound: Annotated[float, RATIO] = np.nan
     found: Annotated[Critical | None, INNER] = None
@@ -105,7 +111,7 @@ class CaseFactors(InNotebook):
         return min(unknown, key=lambda case: case.bound, default=None)
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """Cases that bear less than they have, or less than is asked."""
         return tuple(self._doubts())
 
@@ -116,7 +122,7 @@ class CaseFactors(InNotebook):
             least = min(short, key=lambda case: case.factor)
             asked = f" ({self.demand:g} is asked for)" if self.demand > 1.0 else ""
             others = f"; {len(short) - 1} more of {len(self.cases)} load cases bear less than {bound:g} times theirs" if short[1:] else ""
-            what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {give_way(least.gives_way)}{others}"
+            what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {give_way(least.buckling_mode)}{others}"
             yield Finding(least.place, what, "Ask for less stroke, lighten the load, or make what it presses on stiffer")
         for case in self.cases:
             if np.isnan(case.factor) and not case.bound >= bound:
@@ -126,7 +132,7 @@ class CaseFactors(InNotebook):
 
 
 @check_arguments
-def critical_factors(
+def buckling_factors(
     mechanism: Mechanism, cases: Sequence[LoadCase] | None = None, *, temperature: float = 0.0, most: float = _MOST, demand: float = 1.0
 ) -> CaseFactors:
     """The critical factor of every load case and stroke end of a design, at large displacements.
@@ -137,7 +143,7 @@ def critical_factors(
     force that stays, as `--at` has it; a stroke is kept. A load is followed up to `most` times.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> [case.place for case in critical_factors(parallelogram(), most=2.0).cases]
+    >>> [case.place for case in buckling_factors(parallelogram(), most=2.0).cases]
     ['at rest', 'B = -5.429 um', 'B = 32.57 um']
     """
     model = nonlinear(mechanism, temperature=temperature)
@@ -146,7 +152,7 @@ def critical_factors(
 
 
 def load_cases(mechanism: Mechanism) -> tuple[LoadCase, ...]:
-    """The load cases and stroke ends of a design, as `critical_factors` has them.
+    """The load cases and stroke ends of a design, as `buckling_factors` has them.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [(case.load, case.place) for case in load_cases(parallelogram())][:2]
@@ -233,7 +239,7 @@ def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
 def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tolerance: float = ENOUGH) -> Critical:
     """The factor on what grows in a load case, from where the stage stands there; below 1 it is looked for from no load on.
 
-    Raises `DesignError` where the stage has no equilibrium there, and as `critical` does.
+    Raises `DesignError` where the stage has no equilibrium there, and as `critical_load` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -245,7 +251,7 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     inputs = {channel.name for channel in model.inputs}
     stays = {**case.stays, **{name: value for name, value in case.at.items() if name in inputs}}
     weight, stated = case.shares
-    return critical(
+    return critical_load(
         model,
         case.grows,
         rest=stays,

@@ -26,9 +26,8 @@ from flexstage.spatial.frame import COMPONENTS
 if TYPE_CHECKING:
     from flexstage.models.nonlinear import equilibrium, linearise
     from flexstage.models.nonlinear import stage as nonlinear
-    from flexstage.models.nonlinear.paths import critical
 else:
-    critical = Late("flexstage.models.nonlinear.paths.critical")
+    critical_load = Late("flexstage.models.nonlinear.paths.critical_load")
     equilibrium = Late("flexstage.models.nonlinear.equilibrium")
     linearise = Late("flexstage.models.nonlinear.linearise")
     nonlinear = Late("flexstage.models.nonlinear.stage")
@@ -158,7 +157,7 @@ def _felt(mechanism: Mechanism) -> LoadEffect:
     state = equilibrium.equilibrium(nonlinear.nonlinear(mechanism))
     unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
     equilibrium.require_equilibrium(state)
-    if int(critical.unstable_motions(state)):
+    if int(critical_load.unstable_motions(state)):
         raise refuse("stage", "under its weight and loads no stable equilibrium was found", "Ask flexstage buckle how much it bears")
     found = _compare(linearise.linearise(unloaded), linearise.linearise(state))
     return replace(found, state=state if found.model is not None else None)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.loaded.strained import strain_cautions
+from flexstage.analysis.loaded.strained import strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, LowerBoundError, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
@@ -22,10 +22,10 @@ from flexstage.models.nonlinear.elements.seat import SEAT, seat
 from flexstage.models.nonlinear.elements.strain import Strains, strains
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
 from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.paths.critical import NothingGivesWayError, critical, unstable_motions
-from flexstage.models.nonlinear.paths.path import continue_along
+from flexstage.models.nonlinear.paths.critical_load import NothingGivesWayError, critical_load, unstable_motions
+from flexstage.models.nonlinear.paths.load_path import continue_along
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.models.nonlinear.state import Effort
+from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _MOST = 0.1
@@ -56,9 +56,9 @@ class Misaligned(InNotebook):
     provenance: str
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory at these sizes."""
-        return tuple(strain_cautions(self.strained))
+        return tuple(strain_warnings(self.strained))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +78,9 @@ class Misalignments(InNotebook):
     worst: Misaligned | None
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory in the worst of them."""
-        return () if self.worst is None else self.worst.cautions
+        return () if self.worst is None else self.worst.warnings
 
 
 @check_arguments
@@ -194,7 +194,7 @@ class _Forced:
         """Equilibria at sizes (k,), those that continue the stage without a misalignment."""
         begin = equilibrium(self.model, hold=self.hold(np.array(0.0)))
         require_equilibrium(begin)
-        found = equilibrium(self.model, hold=self.hold(sizes), effort=Effort(arcs=0))
+        found = equilibrium(self.model, hold=self.hold(sizes), options=SolverOptions(arcs=0))
         return continue_along(begin, found, sizes)
 
     def limits(self, sign: float) -> tuple[float, float]:
@@ -202,7 +202,7 @@ class _Forced:
         most = _MOST * (self.model.size if np.any(self.direction[:3]) else 1.0)
         gain, none = ({name: float(value) for name, value in self.hold(size).items()} for size in (sign, 0.0))
         try:
-            found = sign * critical(self.model, gain, hold=none, most=most).factor
+            found = sign * critical_load(self.model, gain, hold=none, most=most).factor
         except NothingGivesWayError:
             return np.nan, sign * most
         except LowerBoundError as error:

@@ -78,7 +78,7 @@ class Stability:
         return (Finding("stage", what, "Lighten the load, make the parts it presses on stiffer, or turn them so that it hangs"),)
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """Where stiffness and frequencies of the loaded stage are others than those of the drawn one."""
         return tuple(self._doubts())
 

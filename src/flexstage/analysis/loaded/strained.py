@@ -18,11 +18,11 @@ _STRAIN, _CURVING = 0.02, 40.0
 """The largest strain that a linear law is physics for, and the largest b^2 k / t that two shapes across a leaf's width suffice for."""
 
 
-def strain_cautions(strained: Strains) -> Iterator[Finding]:
+def strain_warnings(strained: Strains) -> Iterator[Finding]:
     """Flexures whose strain, stress or curving is beyond the theory in any case; of many that are alike each is told.
 
     >>> none = np.zeros((1, 1))
-    >>> [str(each.where) for each in strain_cautions(Strains(("leaf",), none + 0.03, none, none, np.array([np.nan])))]
+    >>> [str(each.where) for each in strain_warnings(Strains(("leaf",), none + 0.03, none, none, np.array([np.nan])))]
     ['leaf']
     """
     largest, curving, stress = (np.nan_to_num(each) for each in (strained.largest, strained.curving, strained.stress))

@@ -9,8 +9,8 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.loaded.stance import coordinate
-from flexstage.analysis.loaded.strained import left_out, strain_cautions
+from flexstage.analysis.loaded.operating_point import coordinate
+from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
@@ -26,8 +26,8 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.nonlinear.elements.strain import Strains, strains
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.paths.critical import unstable_motions
-from flexstage.models.nonlinear.paths.path import Path
+from flexstage.models.nonlinear.paths.critical_load import unstable_motions
+from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _FREQUENCIES = ("f1", "f2", "f3")
@@ -54,22 +54,22 @@ class Stroke(InNotebook):
     provenance: str
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory, or not found."""
-        return (*_cautions(self), *self.doubts)
+        return (*_warnings(self), *self.doubts)
 
 
 @dataclass(frozen=True, eq=False)
 class Beyond:
     """The path from where a stage gives way, and what is told of it."""
 
-    path: Path
+    path: LoadPath
     stroke: Stroke
 
 
 @check_arguments
 def stroke(
-    path: Path, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None
+    path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None
 ) -> Stroke:
     """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
 
@@ -79,9 +79,9 @@ def stroke(
     how many points are done; without it they are done together.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.models.nonlinear.paths.path import path
+    >>> from flexstage.models.nonlinear.paths.load_path import load_path
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = stroke(path(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4])))
+    >>> found = stroke(load_path(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4])))
     >>> found.along.columns[:4]
     ('platform.x', 'force', 'stiffness', 'platform.y')
     """
@@ -146,7 +146,7 @@ class Points:
         return self.columns[name][0]()
 
 
-def _portion(path: Path, rest: State | None, kinematics: Kinematics | None) -> Stroke:
+def _portion(path: LoadPath, rest: State | None, kinematics: Kinematics | None) -> Stroke:
     points = Points(path.drive, path.values, path.state, path.locked, rest, kinematics)
     points.__dict__["motions"] = path.motions
     none = _FREQUENCIES[points.frequencies.shape[-1] :]
@@ -213,12 +213,12 @@ def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
     return np.where(known[..., 0, 0], 1.0 / compliance, np.nan)
 
 
-def _cautions(found: Stroke) -> Iterator[Finding]:
-    yield from strain_cautions(found.strained)
+def _warnings(found: Stroke) -> Iterator[Finding]:
+    yield from strain_warnings(found.strained)
     lost = np.isnan(found.along.values[:, -2])
     if lost.any():
         what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {_first(found, lost)}"
-        yield Finding(found.drive, what, "Ask for less, or follow the load by arc length (fs.trace)")
+        yield Finding(found.drive, what, "Ask for less, or follow the load by arc length (fs.continuation)")
     loose = found.along.values[:, -1] > 0
     if loose.any():
         what = f"at {int(loose.sum())} of {len(loose)} points the free stage is not stable, the first at {_first(found, loose)}"

@@ -24,8 +24,8 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 class StackLine(InNotebook):
     """Each stack driven alone over its full stroke against the stage, (..., n) each.
 
-    `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `against` [N/m] that of the stage at
-    its ends, other strokes held; `travel` [m] and `force` [N] (compression) the crossing of both lines.
+    `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `stage_stiffness` [N/m] the
+    stage's at its ends, other strokes held; `travel` [m] and `force` [N] (compression) the crossing of both lines.
     """
 
     actuators: tuple[str, ...]
@@ -34,7 +34,7 @@ class StackLine(InNotebook):
     blocking: Annotated[Array, FORCE, Along("actuators"), Heading("blocking force", digits=4)]
     force: Annotated[Array, FORCE, Along("actuators"), Heading("force in the stage", digits=4)]
     stiffness: Annotated[Array, STIFFNESS, Along("actuators"), Heading("own stiffness", digits=4)]
-    against: Annotated[Array, STIFFNESS, Along("actuators"), Heading("stage's stiffness", digits=4)]
+    stage_stiffness: Annotated[Array, STIFFNESS, Along("actuators"), Heading("stage's stiffness", digits=4)]
     provenance: str
 
 
@@ -93,7 +93,7 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
         free=np.broadcast_to(free, slope.shape),
         blocking=own * free,
         stiffness=own,
-        against=against,
+        stage_stiffness=against,
         travel=free * own / (own + against),
         force=free * slope,
         provenance=model.provenance,

@@ -60,7 +60,7 @@ class Buckling(InNotebook):
         return np.where(pressed, self.critical / np.where(pressed, self.compression, 1.0), np.inf)
 
     @property
-    def least(self) -> Annotated[Array, RATIO]:
+    def min_factor(self) -> Annotated[Array, RATIO]:
         """The load factor of the whole stage over the worst strokes (...)."""
         return self.stage.worst
 
@@ -91,7 +91,7 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     >>> from flexstage.models.lumped import lumped
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
-    >>> bool(buckling(stage, lumped(stage), stroke_limits(stage)).least > 10.0)
+    >>> bool(buckling(stage, lumped(stage), stroke_limits(stage)).min_factor > 10.0)
     True
     """
     assembly = expand(mechanism)

@@ -29,11 +29,11 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class LoadRange(InNotebook):
-    """`least` and `largest` compression of each stack over the strokes; `usage` of its maximum load, `pull` over what holds it."""
+    """Compression [N] of each stack over the strokes: `min_force`, `max_force`; `usage` of its maximum load, `pull` over what holds it."""
 
     actuators: tuple[str, ...]
-    least: Annotated[Array, FORCE, Along("actuators")]
-    largest: Annotated[Array, FORCE, Along("actuators")]
+    min_force: Annotated[Array, FORCE, Along("actuators")]
+    max_force: Annotated[Array, FORCE, Along("actuators")]
     usage: Annotated[Array, RATIO, Along("actuators")]
     pull: Annotated[Array, RATIO, Along("actuators")]
 

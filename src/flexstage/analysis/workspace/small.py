@@ -116,7 +116,7 @@ class SmallMotion:
         why = "its faces touch" if self.closes[place] else f"linear models are more than {100.0 * ERROR:g} % off"
         return f"{name} turns by {turned:.4g} mrad, beyond {1e3 * self.limit[place]:.4g} mrad {why}"
 
-    def cautions(self, single: SingleAxis) -> Iterator[Finding]:
+    def warnings(self, single: SingleAxis) -> Iterator[Finding]:
         """Single-axis strokes that are no small motions, and what is left of them."""
         for name, stroke in zip(single.coordinates, np.atleast_2d(single.symmetric)[0], strict=True):
             doubt = self.doubt({name: float(stroke)})

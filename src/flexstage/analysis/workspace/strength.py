@@ -57,7 +57,7 @@ class HingeStress(InNotebook):
         return np.where(loaded | np.isnan(self.allowed), self.allowed / np.where(loaded, self.peak, 1.0), np.inf)
 
     @property
-    def least(self) -> Annotated[Array, RATIO]:
+    def min_safety(self) -> Annotated[Array, RATIO]:
         """The least safety factor of the stage (...); NaN where any hinge's limit is unknown."""
         return np.min(self.safety, axis=-1)
 

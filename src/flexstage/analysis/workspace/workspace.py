@@ -35,23 +35,23 @@ from flexstage.spatial.frame import MOTION
 
 _RIGID = "the ideal model has no elasticity"
 _HINGELESS = "this model knows no single hinges: use the lumped one"
-_FURTHER = frozenset({"corner", "polytope", "drive", "map_error", "gauges", "clearance", "platform_lines", "stack_lines", "loads"})
+_FURTHER = frozenset({"worst_case", "polytope", "drive", "map_error", "gauges", "clearance", "platform_lines", "stack_lines", "loads"})
 
 
 @dataclass(frozen=True, eq=False)
 class Workspace(InNotebook):
     """The workspace of one design; `None` where model or stage do not give a result, and `reasons` say why, by field name.
 
-    `single` are ideal strokes, `corrected` those with lost motion corrected by command. `corner` is what the box `command` of motions (half
-    widths by coordinate, all at once) asks of the actuators, `gauges` what it asks of the gauges. Stress, buckling and loads count from the
-    stage relaxed without voltage, over all strokes and under dead load.
+    `single_axis` are ideal strokes, `corrected` those with lost motion corrected by command. `worst_case` is what the box
+    `command` of motions (half widths by coordinate, all at once) asks of the actuators, `gauges` what it asks of the gauges.
+    Stress, buckling and loads count from the stage relaxed without voltage, over all strokes and under dead load.
     """
 
     command: Annotated[Mapping[str, Number], MOTION]
     limits: StrokeLimits
-    single: SingleAxis
+    single_axis: SingleAxis
     corrected: SingleAxis | None
-    corner: Utilisation | None
+    worst_case: Utilisation | None
     polytope: Polytope | None
     drive: Drive | None
     map_error: MapError | None
@@ -90,7 +90,7 @@ def workspace(
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
-    >>> (1e6 * workspace(stage, ideal(stage), None).single.symmetric[:3]).round(1).tolist()
+    >>> (1e6 * workspace(stage, ideal(stage), None).single_axis.symmetric[:3]).round(1).tolist()
     [75.0, 86.6, 300.0]
     """
     attempt, limits, mapping = Attempts(() if whole else _FURTHER), stroke_limits(mechanism), kinematics.mapping
@@ -103,11 +103,11 @@ def workspace(
     return Workspace(
         command=Table(asked),
         limits=limits,
-        single=single,
+        single_axis=single,
         corrected=attempt.of_ground(
             "corrected", lost, _RIGID, lambda known: single_axis(*stopped(known.correction), provenance=known.provenance)
         ),
-        corner=attempt.of("corner", lambda: utilisation(*stopped(mapping), asked, provenance=kinematics.provenance)),
+        worst_case=attempt.of("worst_case", lambda: utilisation(*stopped(mapping), asked, provenance=kinematics.provenance)),
         polytope=attempt.of("polytope", lambda: reachable(*stopped(mapping), provenance=kinematics.provenance)),
         drive=attempt.of("drive", lambda: drive(mechanism)),
         map_error=attempt.of("map_error", lambda: linear_map_error(mechanism, kinematics, limits)),

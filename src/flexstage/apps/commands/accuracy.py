@@ -11,7 +11,7 @@ from flexstage.analysis.complete import read, required_command
 from flexstage.analysis.linear_statics import drift as drifting
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace import workspace as study
-from flexstage.analysis.workspace.reach import reach
+from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
@@ -39,7 +39,7 @@ from flexstage.show.command.values import motions, names
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
-from flexstage.show.tables.reach import reach_tables
+from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
 from flexstage.show.tables.strength import strength_tables
 
@@ -72,13 +72,13 @@ def workspace(
 
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
-        reached = reach(mechanism, kinematics, elastic_model(mechanism, model))
+        reached = force_workspace(mechanism, kinematics, elastic_model(mechanism, model))
         small = second_order(mechanism, kinematics, motions(command or ()) or required_command(mechanism))
         answer(
             "workspace",
             mechanism,
             lambda: _with_error(reached, small),
-            lambda: [_small_text(small), *reach_tables(reached)],
+            lambda: [_small_text(small), *force_workspace_tables(reached)],
             model=model,
             json=json,
             csv=csv,
@@ -114,7 +114,7 @@ def _small_text(small: SecondOrder | None) -> str | None:
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
     """The tables of motion first, then those of strength."""
     yield tables.stroke_table(workspace)
-    yield None if workspace.corner is None else tables.corner_table(workspace.corner)
+    yield None if workspace.worst_case is None else tables.corner_table(workspace.worst_case)
     yield None if workspace.polytope is None else tables.extent_table(workspace.polytope)
     yield None if workspace.map_error is None else tables.map_error_table(workspace.map_error)
     yield None if workspace.drive is None else row_table("Drive", workspace.drive)

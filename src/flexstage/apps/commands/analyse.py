@@ -12,7 +12,7 @@ import typer
 
 from flexstage.analysis import complete
 from flexstage.analysis.assessment.difference import Comparison, difference, set_values
-from flexstage.analysis.cautions import caveats
+from flexstage.analysis.caveats import caveats
 from flexstage.analysis.complete import Analysis
 from flexstage.base.storage.document import Document, as_text
 from flexstage.models.theory import Model
@@ -26,14 +26,14 @@ from flexstage.show.document import analysis_body, analysis_results, envelope, r
 from flexstage.show.table import Table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
 from flexstage.show.tables.change import change_table, set_table
+from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.overview import closing_text, load_line, overview_tables, small_line, stage_text
-from flexstage.show.tables.reach import reach_tables
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table, unit_table
 
-_CAUTIONS, _WIDTH = 3, 80
-"""Lines of cautions that the short form shows, of a terminal of that width."""
+_WARNINGS, _WIDTH = 3, 80
+"""Lines of warnings that the short form shows, of a terminal of that width."""
 
 
 def analyse(  # noqa: PLR0913 (its options)
@@ -51,7 +51,7 @@ def analyse(  # noqa: PLR0913 (its options)
 ) -> None:
     """Analyse a stage: everything at once.
 
-    Shown in short: requirements, strokes, stiffness, modes, lost motion, cautions, the verdict. With --full kinematics, workspace, drift
+    Shown in short: requirements, strokes, stiffness, modes, lost motion, warnings, the verdict. With --full kinematics, workspace, drift
     and error budget too; documents and reports are always whole.
 
     With --set, the key figures are shown as old, new and change, in the report too.
@@ -114,11 +114,11 @@ def _short_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[T
 
 def _short_caveats(analysis: Analysis) -> Iterator[str]:
     known = caveats(analysis.mechanism)
-    if known.cautions:
-        shown = _first_lines([f"  {each}" for each in known.cautions])
-        rest = len(known.cautions) - len(shown)
+    if known.warnings:
+        shown = _first_lines([f"  {each}" for each in known.warnings])
+        rest = len(known.warnings) - len(shown)
         more = [f"  {rest} more: --full"] if rest > 0 else []
-        yield "\n".join(["Cautions", "", *shown, *more])
+        yield "\n".join(["Warnings", "", *shown, *more])
     taken = len(known.defaults_of("analyse"))
     if taken:
         yield f"{taken} value{'' if taken == 1 else 's'} taken by default: --full."
@@ -127,7 +127,7 @@ def _short_caveats(analysis: Analysis) -> Iterator[str]:
 def _first_lines(texts: list[str]) -> list[str]:
     """The first of some texts, at least one, as long as they leave room for the rest on a screen of 80 columns."""
     used = accumulate(math.ceil(len(each) / _WIDTH) for each in texts)
-    return [each for place, (each, lines) in enumerate(zip(texts, used, strict=True)) if place == 0 or lines <= _CAUTIONS]
+    return [each for place, (each, lines) in enumerate(zip(texts, used, strict=True)) if place == 0 or lines <= _WARNINGS]
 
 
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
@@ -165,8 +165,8 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     for unit in (analysis.units or {}).values():
         yield None if unit.omitted is None else omitted_table(unit.omitted)
     yield None if analysis.modes is None else mode_table(analysis.modes)
-    if analysis.reach is not None:
-        yield from reach_tables(analysis.reach)
+    if analysis.force_workspace is not None:
+        yield from force_workspace_tables(analysis.force_workspace)
     if analysis.workspace is not None:
         yield workspace.stroke_table(analysis.workspace)
         yield from strength.strength_tables(analysis.workspace)

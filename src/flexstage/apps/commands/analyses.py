@@ -16,7 +16,7 @@ from flexstage.analysis.linear_statics.deflection import Deflection, deflection
 from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
-from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.loaded.standing import standing
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.record import SideBySide, walk
@@ -44,7 +44,7 @@ from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
-from flexstage.show.viewer.course import modes_at_data
+from flexstage.show.viewer.animation import modes_at_data
 from flexstage.show.viewer.data import stage_data
 from flexstage.show.viewer.view import view_of
 from flexstage.solid.show.moving import glb_of
@@ -115,7 +115,7 @@ def stiffness(  # noqa: PLR0913 (its options)
     linear = there.linear
     read_point = known_point(linear, point, "--point")
     found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
-    sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there.stance is None else None
+    sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there.operating_point is None else None
     mass = mass_matrix(mechanism, linear, point=point)
     attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
     freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
@@ -128,7 +128,7 @@ def stiffness(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 
@@ -176,7 +176,7 @@ def lost_motion(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 
@@ -224,7 +224,9 @@ def modes(  # noqa: PLR0913 (its options)
     if view is not None:
         save(
             view,
-            _moving(mechanism, linear, found, ending, model) if there.stance is None else _moving_there(mechanism, there.stance, found),
+            _moving(mechanism, linear, found, ending, model)
+            if there.operating_point is None
+            else _moving_there(mechanism, there.operating_point, found),
             "--view",
         )
     answer(
@@ -236,7 +238,7 @@ def modes(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 
@@ -255,7 +257,7 @@ def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str
     return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html
 
 
-def _moving_there(mechanism: Mechanism, there: Stance, found: Modes) -> str:
+def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> str:
     """The stage with its modes about where it stands, as a page."""
     return view_of(mechanism, modes_at_data(mechanism, there, found, "about where it stands"), "state 1").html
 
@@ -324,7 +326,7 @@ def response(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from flexstage.analysis.cautions import caveats, model_findings
+from flexstage.analysis.caveats import caveats, model_findings
 from flexstage.apps.words import File
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.storage.document import as_text
@@ -93,7 +93,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Every finding is told with the object, the numbers and what to do. Exit code 2 if there is any.
 
-    Cautions and what is taken by default are told too; they stop nothing.
+    Warnings and what is taken by default are told too; they stop nothing.
     """
     require_writable([("--json", json)], design)
     try:
@@ -112,8 +112,8 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
     show((composition_table(mechanism), *list_caveats("check", mechanism)))
-    count = len(caveats(mechanism).cautions)
-    said = f", {count} caution{'' if count == 1 else 's'}" if count else ""
+    count = len(caveats(mechanism).warnings)
+    said = f", {count} warning{'' if count == 1 else 's'}" if count else ""
     print_result(f"{design}: no findings{said}.")
 
 

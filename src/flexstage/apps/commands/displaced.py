@@ -11,10 +11,10 @@ import typer
 
 from flexstage.analysis.assessment.requirements import asked_factor
 from flexstage.analysis.loaded.course import Course, course, drive_quantity
-from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, critical_factors, load_cases
+from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, buckling_factors, load_cases
 from flexstage.analysis.loaded.misalign import misalign as misaligned
 from flexstage.analysis.loaded.misalign import misalignments
-from flexstage.analysis.loaded.stance import require_consistent
+from flexstage.analysis.loaded.operating_point import require_consistent
 from flexstage.analysis.loaded.stroke import Beyond
 from flexstage.analysis.loaded.stroke import stroke as over_stroke
 from flexstage.apps.words import Branch
@@ -24,7 +24,7 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, RATIO, Quantity
 from flexstage.base.units.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
-from flexstage.models.nonlinear.paths.path import beyond as follow
+from flexstage.models.nonlinear.paths.load_path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.actuator import StrokeActuator
@@ -94,7 +94,7 @@ def stroke(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions,
+        warnings=found.warnings,
         beside=(report,),
     )
 
@@ -188,7 +188,7 @@ def buckle(  # noqa: PLR0913 (its options)
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     asked = place(at, load, fixed, temperature)
     cases = (_case(mechanism, asked, scale_load or ()),) if scale_load or at or load or fixed else load_cases(mechanism)
-    found = critical_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
+    found = buckling_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
     require(_unanswered(found))
     after = _beyond(found, cases, branch, post_buckling) if post_buckling else None
     told = _buckling(found, after)
@@ -202,7 +202,7 @@ def buckle(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions if after is None else (*found.cautions, *after.stroke.cautions),
+        warnings=found.warnings if after is None else (*found.warnings, *after.stroke.warnings),
         beside=(report,),
     )
 
@@ -288,7 +288,7 @@ def misalign(  # noqa: PLR0913 (its options)
             json=json,
             csv=csv,
             xlsx=xlsx,
-            cautions=told.cautions,
+            warnings=told.warnings,
             beside=(report,),
         )
         return
@@ -303,7 +303,7 @@ def misalign(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions,
+        warnings=found.warnings,
         beside=(report,),
     )
 

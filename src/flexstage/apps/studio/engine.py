@@ -30,7 +30,7 @@ TASKS: Mapping[str, str] = {
     "reach": "results:reach",
     "scene": "results:scene",
     "still": "results:still",
-    "cautions": "results:cautions",
+    "warnings": "results:warnings",
     "card": "questions:card",
     "motion": "questions:motion",
     "posed": "questions:posed",

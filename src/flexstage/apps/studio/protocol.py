@@ -533,7 +533,7 @@ class State:
     """The text and what it says; pushed at every change. `digest` is that of the file on disk.
 
     `sound`: the design has no error. If not, `problems` list them; where they are of the text, numbers and figures are those of the last
-    text without. `changed` counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made
+    text without. `changed` counts numbers that differ from the file's, `warnings` are those told last, `page` is the one whose request made
     the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each. `unprotected` is
     the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
     """
@@ -550,7 +550,7 @@ class State:
     undo: bool
     redo: bool
     problems: tuple[Problem, ...]
-    cautions: tuple[Problem, ...]
+    warnings: tuple[Problem, ...]
     amounts: tuple[Amount, ...]
     actuators: tuple[Channel, ...]
     axes: tuple[Channel, ...]
@@ -634,11 +634,11 @@ class Reach:
 
 
 @dataclass(frozen=True)
-class Cautions:
+class Warnings:
     """What is doubtful or taken by default in a revision; the last that is told of it."""
 
     revision: int
-    cautions: tuple[Problem, ...]
+    warnings: tuple[Problem, ...]
 
 
 @dataclass(frozen=True)
@@ -738,7 +738,7 @@ class Travelled:
     to: int
     revision: int
     motions: Any
-    cautions: tuple[Problem, ...]
+    warnings: tuple[Problem, ...]
 
 
 @dataclass(frozen=True)
@@ -859,7 +859,7 @@ Said: TypeAlias = (
     | Figures
     | Verdicts
     | Reach
-    | Cautions
+    | Warnings
     | Card
     | Place
     | Motion

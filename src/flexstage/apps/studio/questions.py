@@ -13,7 +13,7 @@ from flexstage.analysis.assessment.requirements import Sense, Verdict
 from flexstage.analysis.assessment.sensitivities import Sensitivities, sensitivities, slope, step_parameters, steppable
 from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.cautions import part_cautions
+from flexstage.analysis.caveats import part_warnings
 from flexstage.analysis.workspace.strength import sized_links
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.wrench import dead_wrenches
@@ -73,7 +73,7 @@ def card(text: str, file: str, to: int, name: str) -> Card:
     drawn, part = address_of(known.mechanism, link), f"parts.{link.link.part}"
     where = [line for line in (line_of(drawn, lines), line_of(part, lines)) if line]
     verified = () if own is None else _verified(known.mechanism, own)
-    told = (each for each in part_cautions(known.mechanism) if each.where.partition(".")[0] in (name, link.drawn, part, link.link.part))
+    told = (each for each in part_warnings(known.mechanism) if each.where.partition(".")[0] in (name, link.drawn, part, link.link.part))
     return Card(
         to,
         name,
@@ -316,7 +316,7 @@ def _bearing_or_none(text: str, file: str) -> Bearing | None:
 
 def _inputs(known: Bench) -> Matrix:
     """Inputs per motion of the platform, elasticity made up for."""
-    return matrix(known.reach("platform").per_motion if known.forced else known.felt.lost.correction)
+    return matrix(known.force_workspace("platform").per_motion if known.forced else known.felt.lost.correction)
 
 
 def _ideal(known: Bench) -> Matrix:

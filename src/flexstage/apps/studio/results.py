@@ -31,7 +31,6 @@ from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, single_axis
 from flexstage.apps.studio.design.reading import design, problems_of
 from flexstage.apps.studio.protocol import (
-    Cautions,
     Curve,
     Figure,
     Figures,
@@ -43,6 +42,7 @@ from flexstage.apps.studio.protocol import (
     Reach,
     Stroke,
     Verdicts,
+    Warnings,
 )
 from flexstage.apps.studio.wire import floats
 from flexstage.base.finding import DesignError, refuse
@@ -126,22 +126,22 @@ def reach(text: str, file: str, stored: str, revision: int) -> Reach:
 
 def errors(text: str, file: str) -> tuple[Problem, ...]:
     """Findings of a description that can be read but not modelled: those of `flexstage check`."""
-    from flexstage.analysis.cautions import model_findings
+    from flexstage.analysis.caveats import model_findings
 
     return problems_of(model_findings(design(text, file)), text, file)
 
 
-def cautions(text: str, file: str, revision: int) -> Cautions:
+def warnings(text: str, file: str, revision: int) -> Warnings:
     """What is doubtful or taken by default."""
-    return Cautions(revision, _doubts(text, file))
+    return Warnings(revision, _doubts(text, file))
 
 
 @lru_cache(maxsize=8)
 def _doubts(text: str, file: str) -> tuple[Problem, ...]:
-    from flexstage.analysis.cautions import caveats
+    from flexstage.analysis.caveats import caveats
 
     told = caveats(design(text, file))
-    return problems_of((*told.cautions, *told.defaults), text, file)
+    return problems_of((*told.warnings, *told.defaults), text, file)
 
 
 def scene(text: str, file: str) -> Mapping[str, Any]:

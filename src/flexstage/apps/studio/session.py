@@ -30,7 +30,7 @@ _STAGES: tuple[tuple[str, str], ...] = (
     ("errors", "errors"),
     ("reach", "strokes and stress"),
     ("scene", "the geometry"),
-    ("cautions", "cautions"),
+    ("warnings", "warnings"),
 )
 """What is computed of a design, in this order, and what it is called."""
 
@@ -73,7 +73,7 @@ class Session:
         self._wanted: Fitted | None = None
         self._drags, self._poses = Newest[say.Drag](self._revision), Newest[say.Pose](self._revision)
         self._computed = 0
-        self._cautions: tuple[say.Problem, ...] = ()
+        self._warnings: tuple[say.Problem, ...] = ()
         self._failures: dict[str, tuple[say.Problem, ...]] = {}
         """Errors of the computation by its stage."""
         self._pages: dict[int, tuple[str, ...]] = {}
@@ -414,8 +414,8 @@ class Session:
                 self._last[stage] = work, revision
             if outcome.value is not None and stage != "errors":
                 self._push(say.Scene(revision, outcome.value) if stage == "scene" else outcome.value)
-            if stage == "cautions" and outcome.value and outcome.value.cautions != self._cautions:
-                self._cautions = outcome.value.cautions
+            if stage == "warnings" and outcome.value and outcome.value.warnings != self._warnings:
+                self._warnings = outcome.value.warnings
                 self._push_state()
             if stage == "figures" and self._reader is None:
                 self._reader = Helper(self._died)  # not before: it takes processor time to start
@@ -437,7 +437,7 @@ class Session:
             return stage, text, self._file, self.stored.text, revision, self._choice
         if stage == "errors":
             return stage, text, self._file
-        if stage == "cautions":
+        if stage == "warnings":
             return stage, text, self._file, revision
         if stage == "scene":
             moving = stage not in self._last or self._looks("motions")
@@ -489,7 +489,7 @@ class Session:
                 undo=bool(history.past),
                 redo=bool(history.future),
                 problems=self._errors,
-                cautions=self._cautions,
+                warnings=self._warnings,
                 amounts=reading.amounts,
                 actuators=reading.actuators,
                 axes=reading.axes,
@@ -550,7 +550,7 @@ class Session:
         task.add_done_callback(self._work.discard)
 
 
-_FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "cautions": 0.2, "errors": 0.1}
+_FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "warnings": 0.2, "errors": 0.1}
 """Seconds that the stages of a design of thirty links take, before one was timed (benchmarks/studio.py)."""
 
 

@@ -16,7 +16,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.show.command.displaced import loads_of, quantity_of
-from flexstage.show.viewer.course import stroke_data
+from flexstage.show.viewer.animation import stroke_data
 
 _MOST = 201
 _FOUND = 0.1
@@ -38,7 +38,7 @@ def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable
     done(0)
     told = stroke(found, rest, kinematics=ideal(mechanism) if wanted.drive in model.assembly.strokes else None, told=done)
     shown = stroke_data(mechanism, found, told).document()
-    return Travelled(asked.id, revision, shown["motions"], problems_of(told.cautions, text, file))
+    return Travelled(asked.id, revision, shown["motions"], problems_of(told.warnings, text, file))
 
 
 def _stated(mechanism: Mechanism, name: str) -> Course:

@@ -23,7 +23,7 @@ _LARGEST = 2**53 - 1
 _SURROGATE = re.compile("[\ud800-\udfff]")
 _BLOCK = 64
 """Letters that are compared at once."""
-FOLLOWING = (protocol.State, protocol.Scene, protocol.Figures, protocol.Verdicts, protocol.Reach, protocol.Cautions, protocol.Jobs)
+FOLLOWING = (protocol.State, protocol.Scene, protocol.Figures, protocol.Verdicts, protocol.Reach, protocol.Warnings, protocol.Jobs)
 """Kinds of which a page has the last one: what changed in it is told."""
 
 

@@ -59,8 +59,8 @@ def hysteresis(  # noqa: PLR0913 (its options)
     if report is not None:
         save(report, hysteresis_report(found), "--report")
     tables = [stack_table(found), plays_table(found)]
-    cautions = found.hysteresis.cautions
-    answer("hysteresis", None, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, cautions=cautions, beside=(report, output))
+    warnings = found.hysteresis.warnings
+    answer("hysteresis", None, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, warnings=warnings, beside=(report, output))
 
 
 def _open(path: Path, reader: RecordTexts) -> Record:

@@ -40,7 +40,7 @@ from flexstage.control.study.compare import compare_controllers
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.control.tuning.aim import Aim
+from flexstage.control.tuning.objective import TuningObjective
 from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
 from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
 from flexstage.mechanism.mechanism import Mechanism
@@ -97,8 +97,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     ] = None,
     bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: maximum at the margin.")] = None,
     tune_for: Annotated[
-        Aim | None,
-        word_option("--tune-for", Aim, "Objective of optimisation-based tuning. Default: none.", show_default=False),
+        TuningObjective | None,
+        word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: none.", show_default=False),
     ] = None,
     compare: Annotated[bool, typer.Option("--compare", help="Comparison of PI, PID, integral resonant control and LQG.")] = False,
     max_sensitivity: Annotated[
@@ -267,7 +267,7 @@ class _Asking:
         if not self.record:
             return None
         reader = self.texts.options()
-        return identification(usable_measurement(open_records(self.record, reader), reader.allow, told=tell), told=tell)
+        return identification(usable_measurement(open_records(self.record, reader), reader.accept_faults, told=tell), told=tell)
 
 
 @dataclass(frozen=True)
@@ -289,7 +289,7 @@ def _compare(asking: _Asking, outputs: _Written) -> None:
     _require_comparable(asked, {"--export": bool(outputs.exports), "--hardware": outputs.hardware is not None})
     with progress_bar() as shown:
         test = asking.test(shown.share)
-        there = stands.stance
+        there = stands.operating_point
         rivals = compare_controllers(mechanism, asked, there=there, solid=asking.solid, test=test, tell=shown.share, workers=cores())
     if outputs.report is not None:
         save(outputs.report, pages.comparison_report(mechanism, asked, rivals), "--report")
@@ -302,7 +302,7 @@ def _compare(asking: _Asking, outputs: _Written) -> None:
         json=outputs.json,
         csv=outputs.csv,
         xlsx=outputs.xlsx,
-        cautions=(*stands.cautions, *rivals.cautions),
+        warnings=(*stands.warnings, *rivals.warnings),
         beside=(outputs.report,),
     )
 
@@ -312,7 +312,7 @@ def _close(asking: _Asking, outputs: _Written) -> None:
     stands = asking.stands
     with progress_bar() as shown:
         test = asking.test(shown.share)
-        found = loop_study(asking.mechanism, asking.asked, there=stands.stance, solid=asking.solid, test=test, tell=shown.share)
+        found = loop_study(asking.mechanism, asking.asked, there=stands.operating_point, solid=asking.solid, test=test, tell=shown.share)
     if outputs.report is not None:
         save(outputs.report, pages.loop_report(found), "--report")
     for target in outputs.exports:
@@ -322,13 +322,13 @@ def _close(asking: _Asking, outputs: _Written) -> None:
     answer(
         "loop",
         asking.mechanism,
-        lambda: stands.body(found) if stands.stance is not None else found,
+        lambda: stands.body(found) if stands.operating_point is not None else found,
         lambda: [*stands.tables(), *_tables(found)],
         model=asking.model,
         json=outputs.json,
         csv=outputs.csv,
         xlsx=outputs.xlsx,
-        cautions=(*stands.cautions, *found.cautions),
+        warnings=(*stands.warnings, *found.warnings),
         beside=(outputs.report,),
     )
 

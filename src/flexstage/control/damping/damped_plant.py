@@ -67,7 +67,7 @@ class ActiveDamping:
     rate: Annotated[float | None, FREQUENCY] = None
 
     @property
-    def least(self) -> Annotated[float, VIEW]:
+    def min_ratio(self) -> Annotated[float, VIEW]:
         """The least damping ratio of all modes of the plant."""
         return min(each.damped_ratio for each in self.modes)
 

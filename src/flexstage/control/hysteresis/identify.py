@@ -143,14 +143,14 @@ def _assess(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHys
         inner=inner,
         known_from=known,
         trials=tuple(search.trials),
-        cautions=tuple(_cautions(search, rms, inner, limits)),
+        warnings=tuple(_warnings(search, rms, inner, limits)),
         volts=search.volts,
         strokes=search.strokes,
         modelled=modelled,
     )
 
 
-def _cautions(search: _Search, rms: float, inner: int, limits: Range | None) -> Iterator[Finding]:
+def _warnings(search: _Search, rms: float, inner: int, limits: Range | None) -> Iterator[Finding]:
     low, high = search.range
     if not inner:
         what = "it has no inner loops: how it goes on after reversals within the range is concluded from the major loop alone"

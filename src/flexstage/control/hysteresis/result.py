@@ -60,7 +60,7 @@ class IdentifiedHysteresis(InNotebook):
     inner: int
     known_from: int
     trials: tuple[Trial, ...]
-    cautions: Annotated[tuple[Finding, ...], INNER]
+    warnings: Annotated[tuple[Finding, ...], INNER]
     volts: Array
     strokes: Array
     modelled: Array

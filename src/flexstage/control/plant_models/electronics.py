@@ -151,7 +151,7 @@ class Hardware:
 
 
 @check_arguments
-def hardware(
+def sampling_chain(
     mechanism: Mechanism,
     *,
     rate: float | None = None,
@@ -159,13 +159,13 @@ def hardware(
     amplifiers: AmplifierSettings | Mapping[str, AmplifierSettings] | None = None,
     gauges: GaugeSettings | Mapping[str, GaugeSettings] | None = None,
 ) -> Hardware:
-    """The hardware of a stage: what its stacks and gauges state, and what the settings add, one for all or each by name.
+    """Describe the sampling chain of a stage: what its stacks and gauges state, and what the settings add, one for all or each by name.
 
     Raises `DesignError` for names that the stage does not have, and for settings that need what a stack does not state (its capacitance
     for `resistance` and `current`, its voltage range for `noise_density`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> given = hardware(double_triangle(), rate=10e3, delay=50e-6, amplifiers=AmplifierSettings(resistance=100.0, bits=16))
+    >>> given = sampling_chain(double_triangle(), rate=10e3, delay=50e-6, amplifiers=AmplifierSettings(resistance=100.0, bits=16))
     >>> round(given.amplifiers["B1"].bandwidth), round(given.amplifiers["B1"].step * 1e9, 3)  # 1/(2 pi 100 ohm 0.4 uF), 150 um/2^16
     (3979, 2.289)
     """

@@ -87,12 +87,12 @@ def plant(
     Raises `DesignError` for a batch of designs, for
     gauges that do not tell the pose and actuators that cannot make it, for a design without damping.
 
-    >>> from flexstage.control.plant_models.electronics import hardware
+    >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
-    >>> found = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3), modes=2)
+    >>> found = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3), modes=2)
     >>> found.system.input_names[:3], found.system.output_names[:3], found.states
     (('B', 'ground.x', 'ground.y'), ('gap.S', 'platform.x', 'platform.y'), ('mode1', 'mode2', "mode1'", "mode2'", 'gauge.S'))
     """
@@ -114,7 +114,7 @@ def plant(
         None if kept == len(solved.values) else kept,
     )
     stage = _with_relative(from_state_space(space), model, twists)
-    system, states = _with_hardware(stage, space.states, loop, given)
+    system, states = _with_sampling_chain(stage, space.states, loop, given)
     return Plant(
         system=system,
         states=states,
@@ -136,12 +136,12 @@ def zero_order_hold(given: Plant) -> System:
     one. A continuous plant is returned as it is. Inputs and outputs are those of `Plant.system`; its states come first, then the strokes
     under way.
 
-    >>> from flexstage.control.plant_models.electronics import hardware
+    >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
-    >>> one = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3, delay=150e-6), modes=2)
+    >>> one = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3, delay=150e-6), modes=2)
     >>> len(one.system.A), len(zero_order_hold(one).A)  # and two strokes of one actuator under way
     (5, 7)
     """
@@ -210,7 +210,7 @@ def _with_relative(stage: System, model: LinearModel, twists: tuple[str, ...]) -
     return replace(stage, C=np.vstack([stage.C, stage.C[rows]]), D=np.vstack([stage.D, direct]), outputs=(*stage.outputs, *further))
 
 
-def _with_hardware(stage: System, states: tuple[str, ...], loop: Coordinates, given: Hardware) -> tuple[System, tuple[str, ...]]:
+def _with_sampling_chain(stage: System, states: tuple[str, ...], loop: Coordinates, given: Hardware) -> tuple[System, tuple[str, ...]]:
     """Amplifiers before the stage, lags and filters behind its gauges; the names of all states."""
     amplifiers, lags = _amplifiers(loop, given), _lags(loop, given)
     filters = [_filter(channel, given.sensors.get(channel.name, Sensor())) for channel in loop.readings()]
@@ -255,12 +255,12 @@ def _filter(read: Channel, sensor: Sensor) -> System:
 def sensor_filter(given: Plant) -> System:
     """Lags and filters of the gauges alone: from noise `noise.<gauge>` [m] at the gauge to `filtered.<gauge>` [m] at the sampler.
 
-    >>> from flexstage.control.plant_models.electronics import GaugeSettings, hardware
+    >>> from flexstage.control.plant_models.electronics import GaugeSettings, sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
-    >>> filtered = hardware(stage, gauges=GaugeSettings(filter_order=2, filter_corner=1000.0))
+    >>> filtered = sampling_chain(stage, gauges=GaugeSettings(filter_order=2, filter_corner=1000.0))
     >>> found = sensor_filter(plant(lumped(stage), ideal(stage), filtered, modes=2))
     >>> round(float(abs(found.transfer(np.array([1000.0]))[0, 0, 0])), 4)  # 0.7071 / (1 + (1/3)^2)^(1/2), the gauge has 3 kHz
     0.6708

@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.robustness.singular import balance, lower_bound, upper_bound
 from flexstage.control.robustness.stability import require_stable
-from flexstage.control.systems.closed import Cut, Loop, open_at, open_everywhere
+from flexstage.control.systems.closed import Loop, LoopBreak, open_at, open_everywhere
 from flexstage.control.systems.curves import dense_frequencies, sensitivity
 from flexstage.control.systems.norm import Plane, level_crossings, peak, to_plane
 from flexstage.control.systems.resolvent import Resolvent, resolvent
@@ -73,7 +73,7 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
     """alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L), exact by `peak`.
 
     >>> from flexstage.control.example import integral_loop
-    >>> whole = sensitivity(open_at(integral_loop(), Cut.POSE))
+    >>> whole = sensitivity(open_at(integral_loop(), LoopBreak.POSE))
     >>> disk_margin(whole).value <= 2.0
     True
     """
@@ -81,7 +81,7 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
     return Edge(1.0 / found.value, found.frequency)
 
 
-def disk_margins(closed: Loop, cut: Cut | None, skew: float = 0.0) -> DiskMargin:
+def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
     """The disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both ends together.
 
     alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. From above mu <= min over
@@ -91,7 +91,7 @@ def disk_margins(closed: Loop, cut: Cut | None, skew: float = 0.0) -> DiskMargin
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
-    >>> found, alone = disk_margins(one, Cut.POSE), disk_margin(sensitivity(open_at(one, Cut.POSE)))
+    >>> found, alone = disk_margins(one, LoopBreak.POSE), disk_margin(sensitivity(open_at(one, LoopBreak.POSE)))
     >>> found.covered, abs(found.reached / alone.value - 1.0) < 1e-4, abs(found.guaranteed / alone.value - 1.0) < 2e-3
     (True, True, True)
     """

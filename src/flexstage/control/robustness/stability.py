@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import FREQUENCY, RATE
-from flexstage.control.systems.closed import Cut, Loop, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, open_at
 from flexstage.control.systems.system import System
 
 _UP, _DOWN, _FARTHEST = 1.08, 0.6, 1000.0
@@ -42,14 +42,14 @@ class Pole:
 class Verdict(InNotebook):
     """Whether a loop is stable: all closed-loop poles decay, exact hold and delay included.
 
-    `least` is the least stable pole, `poles` (k,) all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all commands
+    `slowest_pole` is the least stable, `poles` (k,) all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all commands
     multiplied by the same factor the loop is stable between `gain_low` and `gain_high`: the interval around 1 of a stable loop (0 and
     infinite: no edge within a factor of 1000), the nearest one below 1 of an unstable loop (NaN: none down to 1/1000). `sentence` says it
     in words.
     """
 
     stable: bool
-    least: Pole
+    slowest_pole: Pole
     poles: Array
     gain_low: float
     gain_high: float
@@ -65,7 +65,7 @@ def verdict(closed: Loop) -> Verdict:
     of 40 %.
 
     >>> from flexstage.control.example import integral_loop
-    >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).least.source
+    >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).slowest_pole.source
     (True, 'mode 2 at 1674 Hz')
     >>> found = verdict(integral_loop(gain=1e5))
     >>> found.stable, found.gain_high < 1.0
@@ -104,7 +104,7 @@ def _is_stable(closed: Loop, least: Pole) -> bool:
 
 def _interval(closed: Loop, *, stable: bool) -> tuple[float, float]:
     """Factors of all commands between which the loop is stable."""
-    open_loop = open_at(closed, Cut.COMMAND)
+    open_loop = open_at(closed, LoopBreak.COMMAND)
     start, up, down = 1.0, int(np.log(_FARTHEST) / np.log(_UP)), int(-np.log(_FARTHEST) / np.log(_DOWN))
     if not stable:
         found = [factor for factor in _UP ** -np.arange(1.0, up + 1) if _growth(open_loop, factor) < 0.0][:1]

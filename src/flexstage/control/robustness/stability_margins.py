@@ -17,7 +17,7 @@ from flexstage.base.record import INNER, VIEW, Along
 from flexstage.base.units.quantity import ANGLE, FREQUENCY, TIME
 from flexstage.control.robustness.disk import Edge, disk_margin
 from flexstage.control.robustness.stability import require_stable
-from flexstage.control.systems.closed import Cut, Loop, loop, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, loop, open_at
 from flexstage.control.systems.curves import Curves, curves, roots, sensitivity, sign_changes
 from flexstage.control.systems.norm import Peak, peak
 from flexstage.control.systems.resolvent import Resolvent, resolvent
@@ -49,7 +49,7 @@ class ChannelMargins:
 class Margins(InNotebook):
     """Margins of the loops cut open at `cut`, one at a time."""
 
-    cut: Cut
+    cut: LoopBreak
     channels: Annotated[tuple[ChannelMargins, ...], INNER]
 
     @property
@@ -71,7 +71,7 @@ class Margins(InNotebook):
 
 
 @check_arguments
-def margins(closed: Loop, cut: Cut, found: Curves | None = None) -> Margins:
+def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
     """Margins of one loop at a time, the others closed; `found` are its `curves` where they are known already.
 
     An edge is where S_ii = 1/(1 + L_i) is real, below 0 or above 1 (L_i real and negative: a gain), or has real part 1/2 (|L_i| = 1: a
@@ -79,7 +79,7 @@ def margins(closed: Loop, cut: Cut, found: Curves | None = None) -> Margins:
     Gahinet, IEEE Control Systems 40, 2020) by `peak`. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
-    >>> found = margins(integral_loop(), Cut.POSE).of("x")
+    >>> found = margins(integral_loop(), LoopBreak.POSE).of("x")
     >>> round(found.gain_high.value, 2), round(found.phase.value, 2), found.gain_low.value
     (4.49, 1.56, 0.0)
     """
@@ -129,21 +129,21 @@ def _has_direct_gain(own: complex, step: float | None) -> bool:
 class Peaks(InNotebook):
     """Highest singular values of S = (I + L)^-1 and T = I - S at a cut, with rotations times the stage's length (poses) or as they are."""
 
-    cut: Cut
+    cut: LoopBreak
     sensitivity: Peak
     complementary: Peak
 
 
-def peaks(closed: Loop, cut: Cut) -> Peaks:
+def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
     """H-infinity norms of S and T by `peak`. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
-    >>> peaks(integral_loop(), Cut.POSE).sensitivity.value > 1.0
+    >>> peaks(integral_loop(), LoopBreak.POSE).sensitivity.value > 1.0
     True
     """
     require_stable(closed, "peaks of S and T")
     whole = sensitivity(open_at(closed, cut))
-    scale = closed.plant.coordinates.scale if cut is Cut.POSE else np.ones(len(closed.plant.actuators))
+    scale = closed.plant.coordinates.scale if cut is LoopBreak.POSE else np.ones(len(closed.plant.actuators))
     scaled = replace(whole, B=whole.B / scale, C=whole.C * scale[:, None], D=whole.D * scale[:, None] / scale)
     rest = replace(scaled, C=-scaled.C, D=np.eye(len(scale)) - scaled.D)
     return Peaks(cut, peak(scaled), peak(rest))
@@ -175,7 +175,7 @@ def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
     ([15.9], [15.9])
     """
     require_stable(closed, "bandwidths")
-    found = found or curves(closed, Cut.POSE)
+    found = found or curves(closed, LoopBreak.POSE)
     level = np.sqrt(0.5)
     return Bandwidths(
         found.names,
@@ -245,8 +245,8 @@ def delay_margin(closed: Loop) -> Edge:
     True
     """
     require_stable(closed, "delay margin")
-    response = resolvent(open_at(closed, Cut.POSE))
-    expected = Edge(*min(_unit_crossings(response, curves(closed, Cut.POSE).frequencies), default=(np.inf, np.nan)))
+    response = resolvent(open_at(closed, LoopBreak.POSE))
+    expected = Edge(*min(_unit_crossings(response, curves(closed, LoopBreak.POSE).frequencies), default=(np.inf, np.nan)))
     step = closed.step
     if step is None and np.max(np.abs(np.linalg.eigvals(response.system.D))) >= 1.0:
         return Edge(0.0, np.inf)
@@ -256,7 +256,7 @@ def delay_margin(closed: Loop) -> Edge:
         return Edge(_scan_delay(closed, expected.value), expected.frequency)
 
     def excess(later: float) -> float:
-        moved = resolvent(open_at(_delay_loop(closed, later % step), Cut.POSE))
+        moved = resolvent(open_at(_delay_loop(closed, later % step), LoopBreak.POSE))
         return _missing_delay(moved, expected.frequency, later - later % step)
 
     return Edge(_secant_root(excess, expected.value), expected.frequency)

@@ -40,7 +40,7 @@ def loop_report(found: LoopStudy) -> str:
     sections = (
         stage_section(scene(mechanism), motion=played or first_motion(data)),
         loop_section(found),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         frequency_section(found),
         measured_section(found),
         time_section(found),
@@ -58,7 +58,7 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     lines = [
         FrontLine(kind_name(name), name in found.front, one.rejection, one.noise, one.settling, one.delay_margin)
         for name, each in found.controllers.items()
-        if (one := each.turned) is not None and len(one.gains)
+        if (one := each.detuned) is not None and len(one.gains)
     ]
     caption = (
         "Dots: as tuned; lines: the same controllers with their output turned down to a tenth at most. The worst of all motions, in the "
@@ -68,7 +68,7 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     sections = (
         stage_section(scene(mechanism), motion=first_motion(data)),
         section("Controllers side by side", [comparison_table(found), drawn if lines else None]),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         section("Motion by motion", [rivals_table(found)]),
     )
     head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))

@@ -170,8 +170,8 @@ def frequency_section(found: LoopStudy) -> Section | None:
     spots = tuple(margin_spots(found))
     opened = open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes, spots=spots)
     loops = to_svg(opened, "open-loops", "Open loops over frequency")
-    goal = found.controller.tuning.goal.sensitivity if found.controller.tuning is not None else _GOAL
-    pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), goal)
+    peak = found.controller.tuning.spec.sensitivity if found.controller.tuning is not None else _GOAL
+    pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), peak)
     sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
     caption = (

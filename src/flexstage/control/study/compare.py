@@ -10,7 +10,7 @@ from typing import Annotated, TypeAlias
 import numpy as np
 
 from flexstage.analysis.dynamics.solid_modes import FeaModes
-from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.notebook import InNotebook
@@ -27,8 +27,8 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.judge import closed_growth
 from flexstage.control.tuning.outcome import Bench, bench, outcome
 from flexstage.control.tuning.search import field
+from flexstage.control.tuning.search_spec import SearchSpec
 from flexstage.control.tuning.view import view
-from flexstage.control.tuning.wish import Wish
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -41,8 +41,8 @@ _TURNED = np.geomspace(1.0, 0.1, 9)
 
 
 @dataclass(frozen=True, eq=False)
-class Turned:
-    """A controller as it was tuned, and turned down: its output times `gains` (g,), those that are stable.
+class DetunedController:
+    """Detuned controller: the tuned one with its output times `gains` (g,), those that are stable.
 
     By gain the worst of all loops, without limits and with rounding as white noise: `rejection`, `settling` (NaN: longer than the step
     that is looked at) and `delay_margin`; `noise` is the rms at rest, poses as lengths, in the geometric mean of the loops (empty: nothing
@@ -62,9 +62,9 @@ class Rival:
 
     `peak` is the coupled peak of S, `rejection` where |S| first rises through 1, `noise` the rms at rest, `settling` the time
     to 2 % of a step (infinite: it does not settle), `overshoot` a share of the step, `delay_margin` the least of the loops, `gauge_share`
-    the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `turned`
-    what it comes to with less gain. `slowly_rounding` are the gauges whose rounding is no white noise, as which it is counted in `noise`;
-    `cautions` are the loop's.
+    the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `detuned`
+    is the same with less gain. `slowly_rounding` are the gauges whose rounding is no white noise, as which it is counted in `noise`;
+    `warnings` are the loop's.
     """
 
     coordinates: tuple[str, ...]
@@ -77,9 +77,9 @@ class Rival:
     overshoot: Annotated[Array, Along("coordinates")]
     delay_margin: Annotated[float, TIME]
     gauge_share: float | None
-    turned: Turned | None = None
+    detuned: DetunedController | None = None
     slowly_rounding: tuple[str, ...] = ()
-    cautions: Annotated[tuple[Finding, ...], INNER] = ()
+    warnings: Annotated[tuple[Finding, ...], INNER] = ()
 
     @property
     def figures(self) -> Mapping[str, float]:
@@ -109,9 +109,9 @@ class Comparison(InNotebook):
         return {aim: min((name for name in every if aim in every[name]), key=lambda name: every[name][aim]) for aim in aims}
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What holds of every controller."""
-        every = [each.cautions for each in self.controllers.values()]
+        every = [each.warnings for each in self.controllers.values()]
         return tuple(each for each in dict.fromkeys(every[0] if every else ()) if all(each in others for others in every))
 
     @property
@@ -133,7 +133,7 @@ def compare_controllers(
     mechanism: Mechanism,
     setup: LoopSetup | None = None,
     *,
-    there: Stance | None = None,
+    there: OperatingPoint | None = None,
     solid: FeaModes | None = None,
     test: Identification | None = None,
     tell: Told | None = None,
@@ -184,7 +184,7 @@ def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, 
 
 def _rival_of(
     mechanism: Mechanism,
-    there: Stance | None,
+    there: OperatingPoint | None,
     solid: FeaModes | None,
     test: Identification | None,
     _line: Line | None,
@@ -232,17 +232,17 @@ def rival(study: LoopStudy) -> Rival:
         overshoot=np.array([steps[name].overshoot for name in names]),
         delay_margin=min(each.delay.value for each in study.margins.channels),
         gauge_share=_gauge_share(study.noise),
-        turned=_turned(study, float(np.max(settling))),
+        detuned=_detuned(study, float(np.max(settling))),
         slowly_rounding=study.noise.slowly_rounding,
-        cautions=study.cautions,
+        warnings=study.warnings,
     )
 
 
-def _turned(study: LoopStudy, settling: float) -> Turned:
+def _detuned(study: LoopStudy, settling: float) -> DetunedController:
     """The same controller with less gain; of all its gain the `settling` [s] is known, however long it takes."""
     loops = platform_loops(study.plant.coordinates)
     seen = view(study.plant, loops, 0.0)
-    tried = bench(seen, field(seen, Wish(spread=0.0), study.settled.floor))
+    tried = bench(seen, field(seen, SearchSpec(spread=0.0), study.settled.floor))
     control = study.controller.system
     quieter = ((gain, replace(control, C=gain * control.C, D=gain * control.D)) for gain in _TURNED)
     stable = [gain for gain, system in quieter if closed_growth(seen.systems[0], system) < 0.0]
@@ -250,7 +250,7 @@ def _turned(study: LoopStudy, settling: float) -> Turned:
     noises, settled = (np.array(each) for each in ([one.noise for one in found], [np.max(one.settling) for one in found]))
     settled = np.where(settled < _SEEN * _step_length(tried), settled, np.nan)
     settled = np.where(np.isnan(settled) & (np.array(stable) == 1.0), settling, settled)
-    return Turned(
+    return DetunedController(
         gains=np.array(stable),
         rejection=np.array([np.min(each.rejection[0]) for each in found]),
         noise=np.exp(np.mean(np.log(noises), axis=1)) if found and np.all(noises > 0.0) else np.zeros(0),

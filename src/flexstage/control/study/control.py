@@ -26,13 +26,13 @@ from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching, OfferedKind
 from flexstage.control.study.resolve import ResolvedSetup
-from flexstage.control.study.setup import GAINS, ControllerSetup, GoalSetup, LoopNumbers, NotchAt, PrefilterAt
+from flexstage.control.study.setup import GAINS, ControllerSetup, GoalSetup, LoopNumbers, NotchSetup, PrefilterSetup
 from flexstage.control.systems.system import System, static
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.find import Asked, find
-from flexstage.control.tuning.goal import Goal, Kind, Tuning
+from flexstage.control.tuning.search_spec import SearchSpec
+from flexstage.control.tuning.spec import Kind, Tuning, TuningSpec
 from flexstage.control.tuning.tune import tune
-from flexstage.control.tuning.wish import Wish
 
 _KINDS: Mapping[ControllerKind, Kind] = MappingProxyType(
     {
@@ -121,11 +121,11 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     if asked.goal is not None:
         noises = _expected_noise(given) if asked.law is ControllerKind.LQG else None
         kind = _KINDS[ControllerKind(asked.law.value)]
-        sought = find(given.plant, loops, Asked(kind, _wish(asked, asked.goal), given.floor, forward, noises))
+        sought = find(given.plant, loops, Asked(kind, _search_spec(asked, asked.goal), given.floor, forward, noises))
         return Control(sought.controller.system(given.step), sought.controller, sought, gains)
     task = Task(
         kind=_tuned(asked.law),
-        goal=Goal(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
+        spec=TuningSpec(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
         notches=tuple(_notch(each, given) for each in asked.notches),
         automatic=asked.notching is Notching.AUTOMATIC,
         expected=_expected_noise(given) if asked.law is ControllerKind.LQG else None,
@@ -143,8 +143,8 @@ def _tuned(law: ControllerKind | OfferedKind) -> Kind | Family:
     return family
 
 
-def _wish(asked: ControllerSetup, goal: GoalSetup) -> Wish:
-    return Wish(
+def _search_spec(asked: ControllerSetup, goal: GoalSetup) -> SearchSpec:
+    return SearchSpec(
         objective=goal.objective,
         sensitivity=asked.sensitivity or _SENSITIVITY,
         spread=goal.spread,
@@ -213,11 +213,11 @@ def _law(asked: ControllerSetup, own: LoopNumbers) -> PI | PID:
     return PID(proportional or 0.0, integral or 0.0, derivative or 0.0, corner or _FILTER)
 
 
-def _prefilter(stated: PrefilterAt | None) -> Prefilter | None:
+def _prefilter(stated: PrefilterSetup | None) -> Prefilter | None:
     return None if stated is None else Prefilter(stated.frequency, stated.damping, stated.lead)
 
 
-def _notch(stated: NotchAt, given: ResolvedSetup) -> Notch:
+def _notch(stated: NotchSetup, given: ResolvedSetup) -> Notch:
     """As stated; without a depth it cancels the mode next to it."""
     if stated.depth is not None:
         return Notch(stated.frequency, stated.depth) if stated.damping is None else Notch(stated.frequency, stated.depth, stated.damping)

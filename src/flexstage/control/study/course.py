@@ -16,7 +16,7 @@ from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import TIME
 from flexstage.control.plant_models.coordinates import Coordinates
-from flexstage.control.study.setup import FileMotion, Motion, RasterMotion, SineMotion, SpiralMotion, StepMotion, TrajectorySetup
+from flexstage.control.study.setup import AxisAmplitudes, FileMotion, RasterMotion, SineMotion, SpiralMotion, StepMotion, TrajectorySetup
 from flexstage.control.trajectory.check import reach_findings, speed_findings
 from flexstage.control.trajectory.path import Trajectory, reference
 from flexstage.control.trajectory.profile import Limits
@@ -112,10 +112,10 @@ def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
     return (lengths[0], lengths[1]) if len(lengths) > 1 else None
 
 
-def stated_motions(by: Motion) -> dict[str, float]:
+def stated_motions(by: AxisAmplitudes) -> dict[str, float]:
     """Amounts [m, rad] by the motions that are stated.
 
-    >>> stated_motions(Motion(x=1e-6))
+    >>> stated_motions(AxisAmplitudes(x=1e-6))
     {'x': 1e-06}
     """
     return {name: getattr(by, name) for name in COMPONENTS if getattr(by, name) is not None}
@@ -161,7 +161,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     >>> from flexstage.models.ideal import ideal
     >>> stage = parallelogram()
     >>> loop = coordinates(ideal(stage))
-    >>> far = courses(StepMotion(amplitude=Motion(x=1e-3)), loop)[0]
+    >>> far = courses(StepMotion(amplitude=AxisAmplitudes(x=1e-3)), loop)[0]
     >>> found = course_findings(far, np.array([[1e-3]]), np.zeros(1), ideal(stage).mapping, stroke_limits(stage))
     >>> found[0].where, "leaves what the strokes reach" in found[0].what
     ('trajectory x', True)
@@ -170,7 +170,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     return [Finding(f"trajectory {course.name}", each.what, each.advice) for each in found]
 
 
-def course_cautions(
+def course_warnings(
     course: Course, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
 ) -> list[Finding]:
     """Where a course that is no jump asks amplifiers for more speed than they have: they then run at their limit."""

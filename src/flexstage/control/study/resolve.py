@@ -17,7 +17,7 @@ from flexstage.base.number import Array, Table
 from flexstage.control.damping.charge import ChargedStacks, at_constant_charge, describe_charge, leak_charge
 from flexstage.control.damping.damped_plant import ActiveDamping
 from flexstage.control.damping.legs import Leg, legs
-from flexstage.control.plant_models.electronics import ChargeDrive, GaugeSettings, Hardware, hardware
+from flexstage.control.plant_models.electronics import ChargeDrive, GaugeSettings, Hardware, sampling_chain
 from flexstage.control.plant_models.measured_plant import measured_plant
 from flexstage.control.plant_models.plants import Plant, plant
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
@@ -35,7 +35,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
 
 if TYPE_CHECKING:
-    from flexstage.analysis.loaded.stance import Stance
+    from flexstage.analysis.loaded.operating_point import OperatingPoint
 
 _USUAL = 10e3
 _OVER_HIGHEST = 10.0
@@ -89,7 +89,7 @@ class ResolvedSetup:
         return 1.0 / self.rate
 
 
-def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
+def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
     """Settle a set-up for a stage, drawn or as small motions about where it is brought, or where its dead load brings it if that is felt.
 
     With a `solid` the model is that of the drawn stage by finite elements; what kinematics says is the ideal stage's all the same.
@@ -204,7 +204,7 @@ def _charges(mechanism: Mechanism, model: LinearModel, setup: LoopSetup) -> _Cha
     """What amplifiers of charge hold; `None` where there are none."""
     if setup.amplifier.settings.charge is None:
         return None
-    powers = hardware(mechanism, amplifiers=setup.amplifier.settings).amplifiers
+    powers = sampling_chain(mechanism, amplifiers=setup.amplifier.settings).amplifiers
     drives = Table({name: each.charge for name, each in powers.items() if each.charge is not None})
     held = tuple(each for each in legs(mechanism, model, asked="amplifier") if each.actuator in drives)
     return _Charges(held, drives, at_constant_charge(model, held, drives))
@@ -287,7 +287,7 @@ def _delay_findings(samples: float) -> Iterator[Finding]:
 
 
 def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float) -> Hardware:
-    return hardware(
+    return sampling_chain(
         mechanism,
         rate=rate,
         delay=delay,

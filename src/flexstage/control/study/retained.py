@@ -14,7 +14,7 @@ from flexstage.control.plant_models.retention import MARGIN_CHANGE, Retention, r
 from flexstage.control.robustness.stability_margins import margins, peaks
 from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import ResolvedSetup, retain_modes
-from flexstage.control.systems.closed import Cut, Loop, loop
+from flexstage.control.systems.closed import Loop, LoopBreak, loop
 
 
 def control_and_modes(
@@ -50,7 +50,7 @@ def control_and_modes(
             control = make_controller(given, gains)
 
 
-def stated_modes_cautions(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
+def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
     """Margins with the modes that matter, where the set-up states fewer and a margin is another with more."""
     if given.setup.modes is None or found.complete:
         return []
@@ -68,5 +68,5 @@ def _worst(closed: Loop) -> tuple[float, float]:
     """Peak of S and least phase margin [deg]; infinite and none of an unstable loop."""
     if closed.system.growth >= 0.0:
         return np.inf, 0.0
-    least = min(each.phase.value for each in margins(closed, Cut.POSE).channels)
-    return peaks(closed, Cut.POSE).sensitivity.value, float(np.degrees(least))
+    least = min(each.phase.value for each in margins(closed, LoopBreak.POSE).channels)
+    return peaks(closed, LoopBreak.POSE).sensitivity.value, float(np.degrees(least))

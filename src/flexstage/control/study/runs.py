@@ -28,7 +28,7 @@ from flexstage.control.simulation.run import simulate
 from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
-from flexstage.control.study.course import Course, course_cautions, course_findings, courses, sampled_course
+from flexstage.control.study.course import Course, course_findings, course_warnings, courses, sampled_course
 from flexstage.control.study.follow import Runner, follow
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.stacks import Stacks
@@ -108,7 +108,7 @@ class Run:
     simulated: Simulated
     figures: Annotated[StepFigures | None, INNER]
     tracking: Matrix
-    cautions: Annotated[tuple[Finding, ...], INNER] = ()
+    warnings: Annotated[tuple[Finding, ...], INNER] = ()
     learned: Learned | None = None
     repeated: Repeated | None = None
     heat: Mapping[str, CoilHeat] = field(default_factory=lambda: Table({}))
@@ -182,20 +182,20 @@ def runs(
     slew = computed.amplifiers.slew
     found = []
     for course, (times, poses) in zip(asked, sampled, strict=True):
-        cautions = tuple(course_cautions(course, poses, times, gains, slew, units=units))
+        warnings = tuple(course_warnings(course, poses, times, gains, slew, units=units))
         if (known := given.setup.follow) is None:
-            found.append(_run(given, course, computed, cautions, poses=poses, rest=rest))
+            found.append(_run(given, course, computed, warnings, poses=poses, rest=rest))
         else:
             runner = Runner(_in_noise(given, computed, rest), _running(given, computed, rest))
             learnt = follow(known, closed, control.system, poses, course, rest=rest, runner=runner)
-            run = _run_of(course, learnt.simulated, computed, cautions)
+            run = _run_of(course, learnt.simulated, computed, warnings)
             found.append(replace(run, learned=learnt.learned, repeated=learnt.repeated, commanded=learnt.commanded))
     return tuple(_with_legs(_with_heat(given, run), computed) for run in found)
 
 
 def _with_heat(given: ResolvedSetup, run: Run) -> Run:
-    """The run with what its force actuators bear; a caution where that is more than they may be held at."""
-    assembly, heat, cautions = expand(given.mechanism), {}, []
+    """The run with what its force actuators bear; a warning where that is more than they may be held at."""
+    assembly, heat, warnings = expand(given.mechanism), {}, []
     for number, channel in enumerate(given.plant.coordinates.commands()):
         if channel.name not in assembly.thrusts or not isinstance(part := assembly.actuator(channel.name), ThrustActuator):
             continue
@@ -206,15 +206,15 @@ def _with_heat(given: ResolvedSetup, run: Run) -> Run:
         heat[channel.name] = CoilHeat(rms, channel.unit, min(ends, default=None), *told)
         if ends and rms > min(ends):
             what = f"{channel.name} runs at {rms:.3g} {channel.unit} rms, and bears {min(ends):.3g} {channel.unit} for ever"
-            cautions.append(Finding(f"trajectory {run.course.name}", what, "Rest between courses, or command less"))
-    return replace(run, heat=Table(heat), cautions=(*run.cautions, *cautions)) if heat else run
+            warnings.append(Finding(f"trajectory {run.course.name}", what, "Rest between courses, or command less"))
+    return replace(run, heat=Table(heat), warnings=(*run.warnings, *warnings)) if heat else run
 
 
 def _with_legs(run: Run, computed: Machine) -> Run:
-    """The run with what inner loops take of their amplifiers; a caution where that is more than these give, which is simulated so."""
+    """The run with what inner loops take of their amplifiers; a warning where that is more than these give, which is simulated so."""
     seen, powers = run.simulated, computed.amplifiers
     channels = [channel.name for channel in seen.channels]
-    used, cautions = {}, []
+    used, warnings = {}, []
     for number, name in enumerate(seen.actuators):
         if f"{ADDED}.{name}" not in channels:
             continue
@@ -227,8 +227,8 @@ def _with_legs(run: Run, computed: Machine) -> Run:
         if not used[name].is_held:
             what = f"with force feedback {name} goes to {1e6 * used[name].largest:.4g} um of {1e6 * reach:.4g} um"
             rates = f"at up to {1e3 * fastest:.4g} mm/s of {1e3 * used[name].slew:.4g} mm/s, and is simulated as if its amplifier gave it"
-            cautions.append(Finding(f"trajectory {run.course.name}", f"{what} {rates}", "Command less or more slowly, or damp less"))
-    return replace(run, legs=Table(used), cautions=(*run.cautions, *cautions)) if used else run
+            warnings.append(Finding(f"trajectory {run.course.name}", f"{what} {rates}", "Command less or more slowly, or damp less"))
+    return replace(run, legs=Table(used), warnings=(*run.warnings, *warnings)) if used else run
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:
@@ -354,9 +354,9 @@ def _after(found: Simulated, lead: int) -> Simulated:
     return replace(found, **(kept | {"times": found.times[lead:] - found.times[lead]}))
 
 
-def _run(given: ResolvedSetup, course: Course, computed: Machine, cautions: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
+def _run(given: ResolvedSetup, course: Course, computed: Machine, warnings: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
     found = simulate(computed, poses) if course.is_step else _simulate_noise(given, computed, poses, rest)
-    return _run_of(course, found, computed, cautions)
+    return _run_of(course, found, computed, warnings)
 
 
 def _in_noise(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[[Array, int], Simulated]:
@@ -381,12 +381,12 @@ def _running(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[[
     return begin
 
 
-def _run_of(course: Course, found: Simulated, computed: Machine, cautions: tuple[Finding, ...]) -> Run:
+def _run_of(course: Course, found: Simulated, computed: Machine, warnings: tuple[Finding, ...]) -> Run:
     figures = step_figures(found, _BAND) if course.is_step else None
-    return Run(course, found, figures, tracking(found), (*cautions, *_range_cautions(course, found, computed)))
+    return Run(course, found, figures, tracking(found), (*warnings, *_range_warnings(course, found, computed)))
 
 
-def _range_cautions(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
+def _range_warnings(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
     """Gauges that went beyond their range."""
     for read, share, reach in zip(computed.read(), found.out_of_range, computed.reach, strict=True):
         if share > 0.0:

@@ -31,7 +31,7 @@ from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Following, Notching, OfferedKind, StackKind
 from flexstage.control.study.hardware.amplifier_kinds import AMPLIFIERS
 from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup
-from flexstage.control.tuning.aim import Aim
+from flexstage.control.tuning.objective import TuningObjective
 from flexstage.mechanism.grammar.node import ChoiceNode, Wanted
 from flexstage.models.theory import Model
 
@@ -63,7 +63,7 @@ GAINS = ("proportional", "integral", "derivative")
 
 
 @dataclass(frozen=True)
-class Motion(CheckedFields):
+class AxisAmplitudes(CheckedFields):
     """Amounts by motion of the platform; absent: none."""
 
     x: Annotated[float, DISPLACEMENT] | None = None
@@ -112,7 +112,7 @@ class Floor(CheckedFields):
 
 
 @dataclass(frozen=True)
-class NotchAt(CheckedFields):
+class NotchSetup(CheckedFields):
     """A notch filter: at which `frequency`, how `deep` (gain there), how wide (`damping` of its poles)."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
@@ -121,7 +121,7 @@ class NotchAt(CheckedFields):
 
 
 @dataclass(frozen=True)
-class PrefilterAt(CheckedFields):
+class PrefilterSetup(CheckedFields):
     """A prefilter of the reference: a low-pass of second order at a `frequency` with a `damping`, and a `lead` above it."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
@@ -141,8 +141,8 @@ class LoopNumbers(CheckedFields):
     integral: Annotated[float, RATE, NOT_NEGATIVE] | None = None
     derivative: Annotated[float, TIME, NOT_NEGATIVE] | None = None
     filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    notches: tuple[NotchAt, ...] = ()
-    prefilter: PrefilterAt | None = None
+    notches: tuple[NotchSetup, ...] = ()
+    prefilter: PrefilterSetup | None = None
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class GoalSetup(CheckedFields):
     to `gain` off. With `prefilter` what is commanded is shaped too.
     """
 
-    objective: Aim = Aim.BALANCE
+    objective: TuningObjective = TuningObjective.BALANCE
     rejection: Annotated[float, FREQUENCY, POSITIVE] | None = None
     settling: Annotated[float, TIME, POSITIVE] | None = None
     overshoot: Annotated[float, RATIO, _OVER] = 0.2
@@ -184,9 +184,9 @@ class ControllerSetup(CheckedFields):
     derivative: Annotated[float, TIME, NOT_NEGATIVE] | None = None
     filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
     notching: Notching = Notching.AUTOMATIC
-    notches: tuple[NotchAt, ...] = ()
+    notches: tuple[NotchSetup, ...] = ()
     loops: tuple[LoopNumbers, ...] = ()
-    prefilter: PrefilterAt | None = None
+    prefilter: PrefilterSetup | None = None
     goal: GoalSetup | None = None
 
     @property
@@ -265,7 +265,7 @@ class StepMotion(CheckedFields):
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
 
-    amplitude: Motion = field(default_factory=Motion)
+    amplitude: AxisAmplitudes = field(default_factory=AxisAmplitudes)
     speed: Annotated[float, SPEED, POSITIVE] | None = None
     acceleration: Annotated[float, ACCELERATION, POSITIVE] | None = None
     jerk: Annotated[float, JERK, POSITIVE] | None = None
@@ -313,7 +313,7 @@ class SineMotion(CheckedFields):
 
     frequency: Annotated[float, FREQUENCY, POSITIVE] = 5.0
     periods: Annotated[float, RATIO, POSITIVE] = 3.0
-    amplitude: Motion = field(default_factory=Motion)
+    amplitude: AxisAmplitudes = field(default_factory=AxisAmplitudes)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.loaded.load_effect import LoadEffect
-from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
@@ -35,11 +35,11 @@ from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.control import Control
 from flexstage.control.study.resolve import ResolvedSetup, on_test, resolve
 from flexstage.control.study.rest import RestErrors, rest_errors
-from flexstage.control.study.retained import control_and_modes, stated_modes_cautions
+from flexstage.control.study.retained import control_and_modes, stated_modes_warnings
 from flexstage.control.study.runs import RestRms, Run, rest_rms, runs, simulate_rest
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
-from flexstage.control.systems.closed import Cut, Loop, loop
+from flexstage.control.systems.closed import Loop, LoopBreak, loop
 from flexstage.control.systems.curves import Curves, curves
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
@@ -62,7 +62,7 @@ class LoopStudy(InNotebook):
     `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent, as `reasons` say, of a stage
     in open loop. `static_errors` are those at rest of the stage without its loop. `noise` is the budget at rest, `still` (where there is
     any noise) a simulation of it, `resting` what several find where rounding is no white noise, so that the budget does not hold. `stacks`
-    are those with hysteresis, if the set-up states any, `hysteresis` what they do in open loop. `runs` are the simulations. `cautions`
+    are those with hysteresis, if the set-up states any, `hysteresis` what they do in open loop. `runs` are the simulations. `warnings`
     are what one should know of all this.
     """
 
@@ -87,7 +87,7 @@ class LoopStudy(InNotebook):
     stacks: Annotated[Stacks | None, INNER]
     hysteresis: Sweep | None
     runs: tuple[Run, ...]
-    cautions: Annotated[tuple[Finding, ...], INNER]
+    warnings: Annotated[tuple[Finding, ...], INNER]
     reasons: Mapping[str, str]
     measured: MeasuredMargins | None = None
 
@@ -154,7 +154,7 @@ def loop_study(
     mechanism: Mechanism,
     setup: LoopSetup | None = None,
     *,
-    there: Stance | None = None,
+    there: OperatingPoint | None = None,
     solid: FeaModes | None = None,
     test: Identification | None = None,
     tell: Told | None = None,
@@ -190,7 +190,7 @@ def loop_study(
     noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative_motions(given)))
     still = simulate_rest(given, control, closed)
     resting = rest_rms(given, control, closed) if noise.slowly_rounding else None
-    seen = curves(closed, Cut.POSE) if is_closed else None
+    seen = curves(closed, LoopBreak.POSE) if is_closed else None
     return LoopStudy(
         settled=given,
         lost=lost,
@@ -198,12 +198,12 @@ def loop_study(
         closed=closed,
         stability=found,
         growth_all_modes=growth,
-        margins=said.of(0.8, "margins", lambda: margins(closed, Cut.POSE, seen)) if is_closed else None,
-        peaks=peaks(closed, Cut.POSE) if is_closed else None,
+        margins=said.of(0.8, "margins", lambda: margins(closed, LoopBreak.POSE, seen)) if is_closed else None,
+        peaks=peaks(closed, LoopBreak.POSE) if is_closed else None,
         bandwidths=bandwidths(closed, seen) if is_closed else None,
         curves=seen,
         crosstalk=crosstalk(closed),
-        disk_margin=disk_margins(closed, Cut.POSE) if is_closed else None,
+        disk_margin=disk_margins(closed, LoopBreak.POSE) if is_closed else None,
         static_errors=rest,
         noise=noise,
         still=still,
@@ -212,11 +212,11 @@ def loop_study(
         hysteresis=None if stacks is None else sweep_stacks(stacks),
         runs=tested,
         retention=retained,
-        cautions=(
-            *stated_modes_cautions(given, control, closed, retained),
-            *_cautions(given),
+        warnings=(
+            *stated_modes_warnings(given, control, closed, retained),
+            *_warnings(given),
             *_slow_rounding(noise),
-            *(each for run in tested for each in run.cautions),
+            *(each for run in tested for each in run.warnings),
         ),
         reasons=Table(_reasons(is_closed=is_closed, forced=lost is None, tested=test is not None)),
         measured=measured,
@@ -271,7 +271,7 @@ def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
         yield Finding("gauges", what, advice)
 
 
-def _cautions(given: ResolvedSetup) -> list[Finding]:
+def _warnings(given: ResolvedSetup) -> list[Finding]:
     """What a design does not state, and is taken as ideal."""
     found = []
     silent = [name for name, each in given.plant.hardware.sensors.items() if each.noise_density is None]

@@ -14,8 +14,8 @@ from flexstage.control.systems.system import System, connect, rename, select, st
 from flexstage.models.linear.model import Channel
 
 
-class Cut(Enum):
-    """Where a loop is cut open: at the pose (the plant's output, in the error) or at the commands (the plant's input)."""
+class LoopBreak(Enum):
+    """Loop-breaking point: the loop is opened at the pose (the plant's output, in the error) or at the commands (the plant's input)."""
 
     POSE = "pose"
     COMMAND = "command"
@@ -54,13 +54,13 @@ def loop(given: Plant, controller: System) -> Loop:
     in a linear loop); its outputs all `command.<actuator>`. Its step must be the hardware's (continuous: none). Raises `DesignError`
     otherwise, and for a loop without lag or delay whose equations have no solution.
 
-    >>> from flexstage.control.plant_models.electronics import hardware
+    >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.control.plant_models.plants import plant
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
-    >>> one = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3, delay=50e-6), modes=3)
+    >>> one = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3, delay=50e-6), modes=3)
     >>> channels = (Channel("error.x", "m"),), (Channel("command.B", "m"),)
     >>> integral = System(np.eye(1), np.eye(1), 0.05 * np.eye(1), np.zeros((1, 1)), *channels, step=1e-4)
     >>> found = loop(one, integral)
@@ -78,7 +78,7 @@ def loop(given: Plant, controller: System) -> Loop:
     return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
 
 
-def open_at(closed: Loop, cut: Cut, channel: str | None = None) -> System:
+def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     """The open loop L of a negative feedback: S = (I + L)^-1, from what goes into the cut to minus what comes back.
 
     Cut at the pose or at the commands, all channels (rows and columns named by coordinates or actuators, inputs `cut.<name>`), or one
@@ -86,7 +86,7 @@ def open_at(closed: Loop, cut: Cut, channel: str | None = None) -> System:
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
-    >>> at_pose, at_command = open_at(one, Cut.POSE), open_at(one, Cut.COMMAND)
+    >>> at_pose, at_command = open_at(one, LoopBreak.POSE), open_at(one, LoopBreak.COMMAND)
     >>> at_pose.input_names, at_pose.output_names
     (('cut.x',), ('pose.x',))
     >>> far = np.array([10.0, 500.0])
@@ -94,7 +94,7 @@ def open_at(closed: Loop, cut: Cut, channel: str | None = None) -> System:
     True
     """
     given = closed.plant
-    outer = _names("pose", given) if cut is Cut.POSE else _commands(given)
+    outer = _names("pose", given) if cut is LoopBreak.POSE else _commands(given)
     short = [name.removeprefix(f"{cut.value}.") for name in outer]
     if channel is not None and channel not in short:
         require([Finding(channel, f"the loop has no such {cut.value}", suggest_nearest(channel, short))])
@@ -116,7 +116,9 @@ def _loop_cut(closed: Loop, chosen: list[str]) -> System:
     """Open at these signals, the sign turned: what comes back is subtracted."""
     given = closed.plant
     systems, links = _wiring(given, closed.held, closed.controller)
-    outer = dict(zip((*_names("pose", given), *_commands(given)), (*_units(given, Cut.POSE), *_units(given, Cut.COMMAND)), strict=True))
+    outer = dict(
+        zip((*_names("pose", given), *_commands(given)), (*_units(given, LoopBreak.POSE), *_units(given, LoopBreak.COMMAND)), strict=True)
+    )
     swapped = {name: f"cut.{name.partition('.')[2]}" for name in chosen}
     zero = {channel.name for channel in (*_channels("reference", given), *_noises(given), *_disturbances(given))}
     changed = {
@@ -168,8 +170,8 @@ def _commands(given: Plant) -> tuple[str, ...]:
     return tuple(f"command.{name}" for name in given.actuators)
 
 
-def _units(given: Plant, cut: Cut) -> tuple[str, ...]:
-    return given.coordinates.units if cut is Cut.POSE else tuple(channel.unit for channel in given.coordinates.commands())
+def _units(given: Plant, cut: LoopBreak) -> tuple[str, ...]:
+    return given.coordinates.units if cut is LoopBreak.POSE else tuple(channel.unit for channel in given.coordinates.commands())
 
 
 def _noises(given: Plant) -> tuple[Channel, ...]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.systems.closed import Cut, Loop, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, open_at
 from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
@@ -26,7 +26,7 @@ class Curves:
     One loop at a time, the others closed, has L_i = 1/S_ii - 1. `response` gives S anywhere.
     """
 
-    cut: Cut
+    cut: LoopBreak
     names: tuple[str, ...]
     frequencies: Array
     sensitivity: Array
@@ -51,7 +51,7 @@ def sensitivity(open_loop: System) -> System:
     """S = (I + L)^-1 as a system with the names of L's outputs on both sides.
 
     >>> from flexstage.control.example import integral_loop
-    >>> found, far = open_at(integral_loop(), Cut.POSE), np.array([40.0])
+    >>> found, far = open_at(integral_loop(), LoopBreak.POSE), np.array([40.0])
     >>> bool(np.allclose(sensitivity(found).transfer(far) * (1.0 + found.transfer(far)), 1.0))
     True
     """
@@ -60,13 +60,13 @@ def sensitivity(open_loop: System) -> System:
     return replace(open_loop, A=open_loop.A + B @ -open_loop.C, B=B, C=C, D=inverse, inputs=open_loop.outputs)
 
 
-def curves(closed: Loop, cut: Cut) -> Curves:
+def curves(closed: Loop, cut: LoopBreak) -> Curves:
     """S over frequencies dense around every pole of the closed loop and of each loop opened alone, and refined until no L_i jumps.
 
     Up to half the sampling rate; a continuous loop up to 100 times its fastest pole.
 
     >>> from flexstage.control.example import integral_loop
-    >>> found = curves(integral_loop(), Cut.POSE)
+    >>> found = curves(integral_loop(), LoopBreak.POSE)
     >>> found.names, bool(np.max(np.abs(np.diff(np.angle(found.loops[:, 0])) % (2.0 * np.pi) - np.pi)) > np.pi - 0.7)
     (('x',), True)
     """

@@ -19,9 +19,9 @@ from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, estima
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
-from flexstage.control.tuning.goal import Goal, Judgement, Kind
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
 from flexstage.control.tuning.laws import laws
+from flexstage.control.tuning.spec import Judgement, Kind, TuningSpec
 from flexstage.control.tuning.view import View
 
 _HIGH = 0.3
@@ -56,13 +56,13 @@ _Options: TypeAlias = tuple[_Sets, ...]
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What is to be tuned: kind and goal; `notches` in every loop, and whether more are placed on modes; the rest of the controller.
+    """A tuning task: kind and specification; `notches` in every loop, and whether more are placed on modes; the rest of the controller.
 
     `expected` is what an observer expects, `feedforward` (n, f) the strokes by which the reference is fed forward.
     """
 
     kind: Kind | Family
-    goal: Goal
+    spec: TuningSpec
     notches: tuple[Notch, ...] = ()
     automatic: bool = True
     expected: Disturbances | None = None
@@ -88,10 +88,10 @@ class Attempt:
         """How it comes out."""
         return judge_loop(self.seen, self.system, self.gains)
 
-    def reaches(self, frequency: float, goal: Goal) -> bool:
+    def reaches(self, frequency: float, spec: TuningSpec) -> bool:
         """Whether it is stable, no peak too high, and every loop passes 1 within 1 % of the frequency."""
         passed = all(abs(each / frequency - 1.0) < 0.01 for each in own_bandwidths(self.seen, self.gains))
-        return passed and keeps_peak(self.seen, lambda: self.system, self.gains, goal.sensitivity)
+        return passed and keeps_peak(self.seen, lambda: self.system, self.gains, spec.sensitivity)
 
 
 def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
@@ -104,30 +104,30 @@ def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Atte
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.view import view
     >>> plant = integral_loop().plant
-    >>> found = attempt(view(plant, platform_loops(plant.coordinates), 0.0), Task(Kind.PI, Goal()), 20.0)
+    >>> found = attempt(view(plant, platform_loops(plant.coordinates), 0.0), Task(Kind.PI, TuningSpec()), 20.0)
     >>> round(found.judgement.bandwidths[0], 1), found.notches
     (20.0, ((),))
     """
     tried: list[Attempt] = []
     for found in _attempts(seen, task, frequency, calm):
-        if found.reaches(frequency, task.goal):
+        if found.reaches(frequency, task.spec):
             return found
         tried.append(found)
     return min(tried, key=lambda each: each.judgement.score, default=None)
 
 
 def reach(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
-    """What reaches a frequency [Hz] as the goal says; None where nothing that the kind can do does. Faster than to find what comes nearest.
+    """A controller that reaches a frequency [Hz] within the specification; None where the kind has none. Faster than to find the nearest.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.view import view
     >>> plant = integral_loop().plant
     >>> seen = view(plant, platform_loops(plant.coordinates), 0.0)
-    >>> reach(seen, Task(Kind.PI, Goal()), 20.0) is None, reach(seen, Task(Kind.PI, Goal()), 2000.0) is None
+    >>> reach(seen, Task(Kind.PI, TuningSpec()), 20.0) is None, reach(seen, Task(Kind.PI, TuningSpec()), 2000.0) is None
     (False, True)
     """
-    return next((found for found in _attempts(seen, task, frequency, calm) if found.reaches(frequency, task.goal)), None)
+    return next((found for found in _attempts(seen, task, frequency, calm) if found.reaches(frequency, task.spec)), None)
 
 
 def _attempts(seen: View, task: Task, frequency: float, calm: float) -> Iterator[Attempt]:

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System
-from flexstage.control.tuning.goal import Judgement
+from flexstage.control.tuning.spec import Judgement
 from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel
 

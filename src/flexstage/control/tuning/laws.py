@@ -9,7 +9,7 @@ from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.resonant import IntegralResonant, resonant_law
-from flexstage.control.tuning.goal import Kind
+from flexstage.control.tuning.spec import Kind
 
 _PI_ANGLES = np.radians(np.arange(0.0, 81.0, 16.0))
 """From integral control alone to nearly proportional control: six laws."""

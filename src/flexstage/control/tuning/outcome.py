@@ -60,7 +60,7 @@ def bench(seen: View, within: Field) -> Bench:
 def _spread(within: Field) -> list[int]:
     """Variants of which only the modes are off, and no farther than the spread; the model first."""
     cases = enumerate(within.variants)
-    return [place for place, each in cases if abs(each.offset) <= within.wish.spread and each.gain == 1.0 and not each.later]
+    return [place for place, each in cases if abs(each.offset) <= within.spec.spread and each.gain == 1.0 and not each.later]
 
 
 def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
@@ -70,10 +70,10 @@ def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.search import field
     >>> from flexstage.control.tuning.view import view
-    >>> from flexstage.control.tuning.wish import Wish
+    >>> from flexstage.control.tuning.search_spec import SearchSpec
     >>> closed = integral_loop(gain=100.0)
     >>> seen = view(closed.plant, platform_loops(closed.plant.coordinates), 0.0)
-    >>> found = outcome(bench(seen, field(seen, Wish(spread=0.0), {})), closed.controller)
+    >>> found = outcome(bench(seen, field(seen, SearchSpec(spread=0.0), {})), closed.controller)
     >>> bool(found.peaks[0] < 2.0), float(found.overshoot[0].round(2)), bool(found.settling[0] < 0.06)
     (True, 0.0, True)
     """

@@ -18,12 +18,12 @@ from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import select
-from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.fit import BAND, STIFF, Bounds, Misfit, OneLoop, Squares, descend, keeps, sum_squares
-from flexstage.control.tuning.goal import Kind
+from flexstage.control.tuning.objective import TuningObjective
+from flexstage.control.tuning.search_spec import STABLE, SearchSpec
 from flexstage.control.tuning.shape import Shape
+from flexstage.control.tuning.spec import Kind
 from flexstage.control.tuning.view import View, resonances
-from flexstage.control.tuning.wish import STABLE, Wish
 
 _INSIDE = 0.97
 """Share of the peak allowed that a loop by itself may have: frequencies between those looked at, and what loops do to one another."""
@@ -137,22 +137,22 @@ class Variant:
         return self.gain * np.exp(-1j * np.minimum(2.0 * np.pi * frequencies * self.later, self.turn))
 
 
-def variants(wish: Wish) -> tuple[Variant, ...]:
-    """The plants at which a wish is judged, the model's first.
+def variants(spec: SearchSpec) -> tuple[Variant, ...]:
+    """The plants at which a specification is judged, the model's first.
 
-    >>> [each.offset for each in variants(Wish(spread=0.02))]
+    >>> [each.offset for each in variants(SearchSpec(spread=0.02))]
     [0.0, -0.02, 0.02, -0.05, 0.05]
     """
-    limit, spread = wish.sensitivity, wish.spread
+    limit, spread = spec.sensitivity, spec.spread
     near = (-spread, spread) if spread else ()
     far = (-STABLE * spread, STABLE * spread) if spread else ()
-    gains = (1.0 - wish.gain, 1.0 + wish.gain) if wish.gain else ()
-    turns = (*_TURNS, np.inf) if wish.delay_margin else ()
+    gains = (1.0 - spec.gain, 1.0 + spec.gain) if spec.gain else ()
+    turns = (*_TURNS, np.inf) if spec.delay_margin else ()
     return (
         *(Variant(offset, 1.0, 0.0, limit) for offset in (0.0, *near)),
         *(Variant(offset, 1.0, 0.0, _LOOSER * limit) for offset in far),
         *(Variant(0.0, gain, 0.0, limit) for gain in gains),
-        *(Variant(0.0, 1.0, 1.03 * wish.delay_margin, _LATER, turn) for turn in turns),
+        *(Variant(0.0, 1.0, 1.03 * spec.delay_margin, _LATER, turn) for turn in turns),
     )
 
 
@@ -167,7 +167,7 @@ class Field:
     that each may have; none: any. `fast` [Hz] is where loops are known to pass 1: steps are as fine, and filters as fast, as that takes.
     """
 
-    wish: Wish
+    spec: SearchSpec
     variants: tuple[Variant, ...]
     frequencies: Array
     plants: Array
@@ -180,12 +180,12 @@ class Field:
     fast: float = 0.0
 
 
-def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum], places: tuple[float, ...] = (), fast: float = 0.0) -> Field:
+def field(seen: View, spec: SearchSpec, floor: Mapping[str, Spectrum], places: tuple[float, ...] = (), fast: float = 0.0) -> Field:
     """What a view, taken at the offsets of `variants`, gives a search; `floor` by input of the plant.
 
     Frequencies lie dense around `places` [Hz] too, those of the model: where modes are off, as much higher. `fast` is that of `Field`.
     """
-    drive, cases, sense = seen.loops.drive, variants(wish), seen.loops.sense
+    drive, cases, sense = seen.loops.drive, variants(spec), seen.loops.sense
     systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
     own = _frequencies(seen, max(each.offset for each in cases), places)
     frequencies = np.stack([own * (1.0 + each.offset) for each in cases])
@@ -193,10 +193,10 @@ def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum], places: tuple[f
         [sense @ systems[each.offset].at(at) @ drive * each.factor(at)[:, None, None] for each, at in zip(cases, frequencies, strict=True)]
     )
     lines = _lines(seen, fast)
-    slow = np.stack([sense @ systems[offset].at(lines) @ drive for offset in ((0.0, -wish.spread, wish.spread) if wish.spread else (0.0,))])
+    slow = np.stack([sense @ systems[offset].at(lines) @ drive for offset in ((0.0, -spec.spread, spec.spread) if spec.spread else (0.0,))])
     weights = np.sqrt(np.gradient(own))[:, None]
     return Field(
-        wish=wish,
+        spec=spec,
         variants=cases,
         frequencies=frequencies,
         plants=plants,
@@ -316,11 +316,11 @@ def advance(seen: View, within: Field, known: Decentralised) -> Found:
     for block in _blocks(within):
         own = Found(tuple(begun.shapes[loop] for loop in block), tuple(begun.points[loop] for loop in block), (0.0,) * len(block))
         part = _part(within, block)
-        if within.wish.objective is Aim.BALANCE:
+        if within.spec.objective is TuningObjective.BALANCE:
             part = replace(part, allowed=tuple(_NOISIER * each for each in _noises(part, own)))
         starts = [own, *_calmed(part, [own], _BACK)]
-        if within.wish.objective is Aim.SETTLING:  # what rejects far too settles soon
-            balanced = replace(part, wish=replace(part.wish, objective=Aim.BALANCE))
+        if within.spec.objective is TuningObjective.SETTLING:  # what rejects far too settles soon
+            balanced = replace(part, spec=replace(part.spec, objective=TuningObjective.BALANCE))
             starts.insert(0, _climb(balanced, starts, _frequencies_of_aim(balanced, own)))
         found = _climb(part, starts, _frequencies_of_aim(part, starts[0]))
         for place, loop in enumerate(block):
@@ -431,9 +431,9 @@ def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]
         return None
     far = sorted(starts, key=lambda each: -_far(within, each))[:_STARTS]
     calm = _calmed(within, far, 0.0)
-    if within.wish.objective is Aim.BALANCE and _far(within, calm[0]) < _LAME * _far(within, far[0]):
+    if within.spec.objective is TuningObjective.BALANCE and _far(within, calm[0]) < _LAME * _far(within, far[0]):
         calm = _calmed(within, far, _BACK)
-    if within.wish.objective is Aim.BALANCE and _is_calm(within, calm[0]):
+    if within.spec.objective is TuningObjective.BALANCE and _is_calm(within, calm[0]):
         within = replace(within, allowed=tuple(_NOISIER * each for each in _noises(within, calm[0])))
     return _climb(within, [*calm, *far], _wanted(within, calm[0], least))
 
@@ -453,9 +453,9 @@ def _rejections(within: Field, found: Found) -> list[float]:
 
 def _frequencies_of_aim(within: Field, found: Found) -> list[float]:
     """By loop the frequency [Hz] by which the aim is reached already: of rejection, or of which it settles in six periods."""
-    far, aim = _rejections(within, found), within.wish.objective
+    far, aim = _rejections(within, found), within.spec.objective
     soon = [SETTLED / _settling(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
-    return soon if aim is Aim.SETTLING else list(map(min, far, soon)) if aim is Aim.BALANCE else far
+    return soon if aim is TuningObjective.SETTLING else list(map(min, far, soon)) if aim is TuningObjective.BALANCE else far
 
 
 def _settling(one: OneLoop, point: Array) -> float:
@@ -492,7 +492,7 @@ def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
             break
         wanted = [one / _RATIO for one in wanted]
         best = _first_kept(within, starts, wanted)
-    if best is None or within.wish.objective is Aim.NOISE:
+    if best is None or within.spec.objective is TuningObjective.NOISE:
         return replace(best or starts[0], reached=(0.0,) * len(wanted))
     ratio, groups, reached = _RATIO, sorted(set(within.alike)), wanted
     while ratio > _FINEST:
@@ -542,7 +542,7 @@ def _around(found: Found) -> Iterator[Found]:
 
 def _all_bounds(within: Field, frequencies: Iterable[float]) -> list[Bounds]:
     allowed = within.allowed or (np.inf,) * len(within.alike)
-    return [replace(_bounds(within.wish, frequency), noise=noise) for frequency, noise in zip(frequencies, allowed, strict=True)]
+    return [replace(_bounds(within.spec, frequency), noise=noise) for frequency, noise in zip(frequencies, allowed, strict=True)]
 
 
 def _together(within: Field, found: Found) -> Found:
@@ -620,7 +620,7 @@ class Joint:
         if not _is_stable(coupled_sensitivities(within.plants, found, within.frequencies)):
             return np.inf
         own = [Misfit(_beside(within, found, loop), self.bounds[loop], 0.0).passed(found.points[loop]) for loop in self.parts]
-        return max(*own, coupled_peak(within, found) / within.wish.sensitivity / _INSIDE - 1.0)
+        return max(*own, coupled_peak(within, found) / within.spec.sensitivity / _INSIDE - 1.0)
 
 
 def _rms(one: OneLoop, point: Array) -> float:
@@ -751,7 +751,7 @@ def _highest_stable(within: Field, found: Found) -> Found | None:
     for scale in _SCALES[::-1]:
         moved = replace(found, points=tuple(_louder(point, np.log(scale)) for point in found.points))
         whole = coupled_sensitivities(within.plants, moved, within.frequencies)
-        limit = _LOOSE * within.wish.sensitivity
+        limit = _LOOSE * within.spec.sensitivity
         if np.max(np.abs(whole[0])) <= limit and _is_stable(whole) and coupled_peak(within, moved) <= limit:
             return moved
     return None
@@ -771,12 +771,12 @@ def rejection(one: OneLoop, point: Array) -> float:
     return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(one.frequencies[0, ends]))))
 
 
-def _bounds(wish: Wish, frequency: float) -> Bounds:
+def _bounds(spec: SearchSpec, frequency: float) -> Bounds:
     """What a loop shall keep that is as good as a frequency says, in what the aim is about, and what is asked for."""
-    far = frequency if wish.objective in (Aim.BALANCE, Aim.REJECTION) else 0.0
-    soon = SETTLED / frequency if wish.objective in (Aim.BALANCE, Aim.SETTLING) and frequency else np.inf
+    far = frequency if spec.objective in (TuningObjective.BALANCE, TuningObjective.REJECTION) else 0.0
+    soon = SETTLED / frequency if spec.objective in (TuningObjective.BALANCE, TuningObjective.SETTLING) and frequency else np.inf
     return Bounds(
-        max(far, wish.rejection or 0.0), min(soon, wish.settling or np.inf), wish.overshoot - _LEFT, plants=2 if wish.spread else 1
+        max(far, spec.rejection or 0.0), min(soon, spec.settling or np.inf), spec.overshoot - _LEFT, plants=2 if spec.spread else 1
     )
 
 
@@ -811,7 +811,7 @@ def coupled_peak(within: Field, found: Found) -> float:
     """The highest singular value of S over all plants, over its limit, times the sensitivity allowed."""
     whole = coupled_sensitivities(within.plants, found, within.frequencies)
     limits = np.array([each.limit for each in within.variants])
-    return float(np.max(np.linalg.norm(whole, 2, axis=(-2, -1)) / limits[:, None]) * within.wish.sensitivity)
+    return float(np.max(np.linalg.norm(whole, 2, axis=(-2, -1)) / limits[:, None]) * within.spec.sensitivity)
 
 
 def rejects_to(within: Field, found: Found, loop: int) -> float:

@@ -14,7 +14,7 @@ from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.notch import notch_findings
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.tuning.attempt import Attempt, Task, attempt, reach
-from flexstage.control.tuning.goal import Judgement, Kind, Tuning, goal_findings
+from flexstage.control.tuning.spec import Judgement, Kind, Tuning, spec_findings
 from flexstage.control.tuning.view import View, view
 
 _SLOW = 0.1
@@ -35,32 +35,32 @@ _CALM = (0.9, 0.8, 0.7, 0.6)
 
 
 def tune(plant: Plant, loops: Loops, task: Task) -> Tuning:
-    """The controller that reaches a goal, judged on the whole sampled loop.
+    """Tune a controller to a specification, judged on the whole sampled loop.
 
     At the wanted bandwidth (absent: the highest found, by trial from fast to slow and then by halving) every loop's gain is 1; of the
     kind's laws the one with the lowest peak of S is taken, first without notches of its own, then with them. The loop as a whole has to
-    be stable by its eigenvalues and its peak of S below the goal's, also with all modes off by the goal's spread. Once the bandwidth
+    be stable by its eigenvalues and its peak of S below that of `spec`, also with all modes off by its spread. Once the bandwidth
     stands, PI and PID take the strongest integrators that the same peak of S leaves room for (Astrom, Panagopoulos & Hagglund, Automatica
     34 (1998) 585). LQG is tuned by its weights, in platform coordinates. Raises `DesignError` where the bandwidth is not reached: with
     what stands in the way, the highest that is, and what would help.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.tuning.goal import Goal
+    >>> from flexstage.control.tuning.spec import TuningSpec
     >>> plant = integral_loop().plant
-    >>> found = tune(plant, platform_loops(plant.coordinates), Task(Kind.PI, Goal(bandwidth=5.0)))
+    >>> found = tune(plant, platform_loops(plant.coordinates), Task(Kind.PI, TuningSpec(bandwidth=5.0)))
     >>> print(found.reason)
     PI: all gains pass 1 at 5 Hz; the peak of S with modes up to 2 % off is 0.5 dB, 6.02 dB allowed
     """
     loops = platform_loops(loops.coordinates) if task.kind is Kind.LQG else loops
     require(_findings(plant, task))
-    seen = view(plant, loops, task.goal.spread)
-    wanted = task.goal.bandwidth
+    seen = view(plant, loops, task.spec.spread)
+    wanted = task.spec.bandwidth
     top, best = highest_bandwidth(seen, task) if wanted is None else (wanted, attempt(seen, task, wanted))
-    if best is None or not best.reaches(top, task.goal):
+    if best is None or not best.reaches(top, task.spec):
         raise DesignError([_no_bandwidth(seen, task) if wanted is None else _unreached(seen, task, best, wanted)])
     best = _stiffest(seen, task, top, best)
-    return Tuning(task.kind, task.goal, best.controller, best.judgement, best.notches, _sentence(task, best, top))
+    return Tuning(task.kind, task.spec, best.controller, best.judgement, best.notches, _sentence(task, best, top))
 
 
 def _stiffest(seen: View, task: Task, bandwidth: float, found: Attempt) -> Attempt:
@@ -70,7 +70,7 @@ def _stiffest(seen: View, task: Task, bandwidth: float, found: Attempt) -> Attem
     """
     if task.kind not in (Kind.PI, Kind.PID):
         return found
-    tried = [reach(seen, task, bandwidth, share * task.goal.sensitivity) for share in _CALM]
+    tried = [reach(seen, task, bandwidth, share * task.spec.sensitivity) for share in _CALM]
     return max([found, *(each for each in tried if each is not None)], key=_weakest)
 
 
@@ -99,16 +99,16 @@ def trial_bandwidths(seen: View, kind: Kind | Family) -> list[float]:
 
 
 def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
-    """The highest bandwidth [Hz] found at which the goal's margins are kept, within 0.3 %, and the controller; 0 and None: none is.
+    """The highest bandwidth [Hz] found at which the specified margins are kept, within 0.3 %, and the controller; 0 and None: none is.
 
     It is the highest of `trial_bandwidths`, halved up to the next: no proof that no other controller reaches more.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.tuning.goal import Goal
+    >>> from flexstage.control.tuning.spec import TuningSpec
     >>> plant = integral_loop().plant
     >>> seen = view(plant, platform_loops(plant.coordinates), 0.02)
-    >>> round(highest_bandwidth(seen, Task(Kind.PI, Goal(), automatic=False))[0])
+    >>> round(highest_bandwidth(seen, Task(Kind.PI, TuningSpec(), automatic=False))[0])
     56
     """
     places = trial_bandwidths(seen, task.kind)
@@ -131,7 +131,7 @@ def _bisect(seen: View, task: Task, low: tuple[float, Attempt], high: float) -> 
 
 
 def _findings(plant: Plant, task: Task) -> Iterator[Finding]:
-    yield from goal_findings(task.goal, plant.hardware.step)
+    yield from spec_findings(task.spec, plant.hardware.step)
     if task.kind is not Kind.LQG:
         yield from notch_findings(task.notches, plant.frequencies)
     elif task.notches:
@@ -172,7 +172,7 @@ def _reason(task: Task, best: Attempt | None, wanted: float) -> str:
     found, called = best.judgement, _controller_name(task, best)
     if not found.stable:
         return f"the loop with {called} is unstable: it grows by {found.growth:.3g} 1/s{_offset_text(found)}"
-    allowed = task.goal.sensitivity
+    allowed = task.spec.sensitivity
     if found.peak > allowed:
         above = _decibel(found.peak / allowed)
         peak = f"{_decibel(found.peak):.1f} dB at {_three_digits(found.frequency)} Hz{_offset_text(found)}"
@@ -199,8 +199,8 @@ def _help(seen: View, task: Task, wanted: float) -> str:
 
 
 def _sentence(task: Task, best: Attempt, bandwidth: float) -> str:
-    spread = f" with modes up to {100.0 * task.goal.spread:g} % off" if task.goal.spread else ""
-    peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB, {_decibel(task.goal.sensitivity):.3g} dB allowed"
+    spread = f" with modes up to {100.0 * task.spec.spread:g} % off" if task.spec.spread else ""
+    peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB, {_decibel(task.spec.sensitivity):.3g} dB allowed"
     return f"{_controller_name(task, best)}: all gains pass 1 at {_three_digits(bandwidth)} Hz; {peak}"
 
 

@@ -11,12 +11,12 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observer_gain, with_observer
-from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.attempt import driven_gains
 from flexstage.control.tuning.judge import closed_growth
+from flexstage.control.tuning.objective import TuningObjective
 from flexstage.control.tuning.outcome import Bench, Outcome, outcome
 from flexstage.control.tuning.search import SETTLED, last_mode
-from flexstage.control.tuning.wish import Wish
+from flexstage.control.tuning.search_spec import SearchSpec
 
 _BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
 """Grid of starts: bandwidths as shares of the first mode; how many times the expected noise strokes have; weights of the pose."""
@@ -137,55 +137,55 @@ def _cost(searched: Regulated, against: Outcome, point: Array) -> float:
     found = searched.outcome(point)
     if found is None:
         return _UNSTABLE
-    better = np.concatenate(list(_improvements(searched.tried.field.wish, found, against)))
+    better = np.concatenate(list(_improvements(searched.tried.field.spec, found, against)))
     least = -float(np.log(np.mean(np.exp(-_SHARPNESS * better)))) / _SHARPNESS
     return _STEEP * excess_of(searched.tried, found) - least
 
 
-def _improvements(wish: Wish, found: Outcome, against: Outcome) -> Iterator[Array]:
+def _improvements(spec: SearchSpec, found: Outcome, against: Outcome) -> Iterator[Array]:
     """Logarithms by loop, of what the aim is about."""
-    if wish.objective in (Aim.BALANCE, Aim.REJECTION):
+    if spec.objective in (TuningObjective.BALANCE, TuningObjective.REJECTION):
         yield np.log(found.rejection[0] / against.rejection[0])
-    if wish.objective in (Aim.BALANCE, Aim.NOISE):
-        more = _NOISIER if wish.objective is Aim.BALANCE else 1.0
+    if spec.objective in (TuningObjective.BALANCE, TuningObjective.NOISE):
+        more = _NOISIER if spec.objective is TuningObjective.BALANCE else 1.0
         yield np.log(more * np.maximum(against.noise, 1e-300) / np.maximum(found.noise, 1e-300))
-    if wish.objective in (Aim.BALANCE, Aim.SETTLING):
+    if spec.objective in (TuningObjective.BALANCE, TuningObjective.SETTLING):
         yield np.log(np.maximum(against.settling, 1e-300) / np.maximum(found.settling, 1e-300))
 
 
-def merit(wish: Wish, found: Outcome) -> float:
+def merit(spec: SearchSpec, found: Outcome) -> float:
     """The mean logarithm by loop of what the aim is about.
 
     A balance is about the frequency up to which a loop rejects, or that of which it settles in six periods, the lower of them.
     """
     settling = np.maximum(found.settling, 1e-300)
     merits = {
-        Aim.BALANCE: np.minimum(found.rejection[0], SETTLED / settling),
-        Aim.REJECTION: found.rejection[0],
-        Aim.SETTLING: 1.0 / settling,
-        Aim.NOISE: 1.0 / np.maximum(found.noise, 1e-300),
+        TuningObjective.BALANCE: np.minimum(found.rejection[0], SETTLED / settling),
+        TuningObjective.REJECTION: found.rejection[0],
+        TuningObjective.SETTLING: 1.0 / settling,
+        TuningObjective.NOISE: 1.0 / np.maximum(found.noise, 1e-300),
     }
-    return float(np.mean(np.log(merits[wish.objective])))
+    return float(np.mean(np.log(merits[spec.objective])))
 
 
 def worth(tried: Bench, found: Outcome) -> float:
-    """The merit less what passes the bounds of the wish; peaks count where modes are within its spread."""
-    wish = tried.field.wish
-    limits = np.array([each.limit if each.limit <= wish.sensitivity else np.inf for each in tried.field.variants])
-    return merit(wish, found) - _STEEP * _excess(wish, found, limits)
+    """The merit less what exceeds the bounds of the specification; peaks count where modes are within its spread."""
+    spec = tried.field.spec
+    limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in tried.field.variants])
+    return merit(spec, found) - _STEEP * _excess(spec, found, limits)
 
 
 def excess_of(tried: Bench, found: Outcome) -> float:
     """By how much bounds are passed, the sum of what each is; of peaks with a margin for frequencies between those looked at."""
-    return _excess(tried.field.wish, found, _INSIDE * np.array([each.limit for each in tried.field.variants]))
+    return _excess(tried.field.spec, found, _INSIDE * np.array([each.limit for each in tried.field.variants]))
 
 
-def _excess(wish: Wish, found: Outcome, limits: Array) -> float:
+def _excess(spec: SearchSpec, found: Outcome, limits: Array) -> float:
     over = [
         *(found.peaks / limits - 1.0),
-        *(found.overshoot - wish.overshoot),
-        *((wish.rejection or 0.0) / found.rejection[0] - 1.0),
-        *((0.0 if wish.settling is None else found.settling / wish.settling - 1.0) * np.ones(len(found.settling))),
-        *(wish.delay_margin / found.delay_margin - 1.0),
+        *(found.overshoot - spec.overshoot),
+        *((spec.rejection or 0.0) / found.rejection[0] - 1.0),
+        *((0.0 if spec.settling is None else found.settling / spec.settling - 1.0) * np.ones(len(found.settling))),
+        *(spec.delay_margin / found.delay_margin - 1.0),
     ]
     return float(np.sum(np.maximum(over, 0.0)))

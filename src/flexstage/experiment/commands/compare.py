@@ -76,8 +76,8 @@ def compare(  # noqa: PLR0913 (its options)
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=fea)
     found = comparison.compare(mechanism, seen.found, solid, model=model)
-    for caution in found.warnings[len(seen.found.warnings) :]:
-        print_warning(caution)
+    for warning in found.data_warnings[len(seen.found.data_warnings) :]:
+        print_warning(warning)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
     tables = compare_tables(found)[:-1]

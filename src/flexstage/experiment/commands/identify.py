@@ -86,14 +86,14 @@ def identify(  # noqa: PLR0913 (its options)
 
 
 def _with_doubts(mechanism: Mechanism, seen: Identification) -> Identification:
-    """With a caution for every channel that the stage's model makes look exchanged, inverted or scaled; told, too."""
+    """With a warning for every channel that the stage's model makes look exchanged, inverted or scaled; told, too."""
     named = {channel.name for channel in elastic_model(mechanism, Model.LUMPED).outputs}
     if not any(channel.name in named for channel in seen.found.outputs) or not len(seen.found.frequencies):
         return seen
     doubts = tuple(f"{each}." for each in compare(mechanism, seen.found).misnamed)
     for each in doubts:
         print_warning(each)
-    return replace(seen, found=replace(seen.found, warnings=(*seen.found.warnings, *doubts))) if doubts else seen
+    return replace(seen, found=replace(seen.found, data_warnings=(*seen.found.data_warnings, *doubts))) if doubts else seen
 
 
 def _body(seen: Identification, shapes: StageShapes | None) -> SideBySide:

@@ -10,7 +10,7 @@ import typer
 from flexstage.base.finding import Finding, require
 from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, TIME, VOLTAGE, Quantity
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.virtual_rig.recorded import Recorded, Tap
+from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
 from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.virtual_rig.tables import rig_table
@@ -59,12 +59,13 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         str, typer.Option("--drift", metavar="VALUE", help="Random walk of each gauge: standard deviation after a minute.")
     ] = "0 nm",
     input_signal: Annotated[
-        Tap, word_option("--input-signal", Tap, "Recorded input signal: amplifier output with the gauges' filter, or command.")
-    ] = Tap.MONITOR,
+        InputSignal,
+        word_option("--input-signal", InputSignal, "Recorded input signal: amplifier output with the gauges' filter, or command."),
+    ] = InputSignal.MONITOR,
     delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="How much later gauges are recorded, e.g. 1ms.")] = "0 s",
     input_quantity: Annotated[
-        Recorded, word_option("--input-quantity", Recorded, "Quantity of the recorded inputs: stroke in um, or voltage in V.")
-    ] = Recorded.STROKE,
+        InputQuantity, word_option("--input-quantity", InputQuantity, "Quantity of the recorded inputs: stroke in um, or voltage in V.")
+    ] = InputQuantity.STROKE,
     model: ModelName = Model.LUMPED,
     changes: Changes = None,
 ) -> None:
@@ -88,8 +89,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
             values.value("--resolution", resolution, DISPLACEMENT),
             values.value("--drift", drift, DISPLACEMENT) or 0.0,
         ),
-        tap=input_signal,
-        recorded=input_quantity,
+        input_signal=input_signal,
+        input_quantity=input_quantity,
         delay=values.value("--delay", delay, TIME) or 0.0,
     )
     require(values.findings)

@@ -28,7 +28,7 @@ from flexstage.experiment.record_options import (
     identify_records,
 )
 from flexstage.experiment.updating import update as updating
-from flexstage.experiment.updating.free import DEFAULT, Known
+from flexstage.experiment.updating.free import DEFAULT, Prior
 from flexstage.experiment.updating.free import free as free_numbers
 from flexstage.experiment.updating.tables import update_tables
 from flexstage.experiment.updating.text import updated_text
@@ -95,8 +95,8 @@ def update(  # noqa: PLR0913 (its options)
     seen = identify_records(record, texts, model, highest_mode(mechanism, model))
     found = updating.update(mechanism, seen.found, chosen, known)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
-    for caution in found.warnings[len(seen.found.warnings) :]:
-        print_warning(caution)
+    for warning in found.data_warnings[len(seen.found.data_warnings) :]:
+        print_warning(warning)
     answer(
         "update",
         mechanism,
@@ -110,13 +110,13 @@ def update(  # noqa: PLR0913 (its options)
     )
 
 
-def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:
+def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Prior:
     shares: dict[str, float] = {}
     for text in priors:
         name, _, share = (part.strip() for part in text.rpartition("="))
         shares[name] = _share(f"--prior {name}".strip(), share)
     gains = _share("--gain-error", gain_error)  # looked at even where it is not used: a slip is told
-    return Known(
+    return Prior(
         prior=shares.pop("", DEFAULT.prior),
         priors=shares,
         model_error=_share("--model-error", model_error),

@@ -18,7 +18,7 @@ from flexstage.base.finding import DesignError, Finding, refuse, require, sugges
 from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
 from flexstage.experiment.records.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
-from flexstage.experiment.records.options import Allow, Arrays, Kind, Options, assign, matches, number_names, select_names
+from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, assign, matches, number_names, select_names
 from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role, Samples, rising_problem
 from flexstage.experiment.records.unit import plain_unit
 
@@ -272,7 +272,7 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
     scale = TIME_SCALES.get(plain_unit(str(time.attributes.get("units", "s"))), 1.0)
     source = time.samples(int(np.argmax(time.shape)))
     blocks = (source.read(first, min(first + _BLOCK, source.length))[:, 0] * scale for first in range(0, source.length, _BLOCK))
-    told = StatedClock(stated, allow_gaps=Allow.GAPS in options.allow)
+    told = StatedClock(stated, allow_gaps=FaultTolerance.GAPS in options.accept_faults)
     return determine_clock(
         blocks, lambda number: float(source.read(number, number + 1)[0, 0]) * scale, told, f"{contents.where}: {time.name}"
     )

@@ -10,7 +10,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.table.layout import Layout
 from flexstage.experiment.formats.table.values import TableSamples, index_lines
-from flexstage.experiment.records.options import Allow, Options, assign, number_names, select_names
+from flexstage.experiment.records.options import FaultTolerance, Options, assign, number_names, select_names
 from flexstage.experiment.records.record import Channel, Record, Role
 
 _HEAD = 1 << 18
@@ -37,7 +37,7 @@ def read_gcs(path: Path, options: Options) -> tuple[Record, ...]:
     `getgcsheader`): SEPARATOR is the code of the sign between columns, DIM their number, NDATA that of the lines. It states no units:
     they are those of the axes, and the user's to say. Commanded and control values are inputs, positions and sensors outputs, others are
     told by their names. Raises `DesignError` for a header without times (if no rate is stated), one that does not fit its columns, and a
-    file that breaks off (what it holds is used where `Allow.TRUNCATED`).
+    file that breaks off (what it holds is used where `FaultTolerance.TRUNCATED`).
 
     >>> import tempfile
     >>> head = "# SEPARATOR = 32\n# DIM = 2\n# SAMPLE_TIME = 0.5\n# NDATA = 2\n# NAME0 = Target Position of axis 1\n"
@@ -111,7 +111,7 @@ def _samples(path: Path, said: Mapping[str, str], layout: Layout, options: Optio
     if lines.count > wanted:
         where, what = f"{path}: line {layout.line + wanted}", f"it has {lines.count} lines of numbers, its header says {wanted}"
         raise refuse(where, what, "Save one answer of the recorder a file")
-    if Allow.TRUNCATED in options.allow and lines.count > 1:
+    if FaultTolerance.TRUNCATED in options.accept_faults and lines.count > 1:
         return TableSamples(path, layout, lines, whole.columns, lines.count - 1)
     advice = f'Save it anew, or accept "truncated" to use the {max(0, lines.count - 1)} samples before'
     raise refuse(str(path), f"it breaks off: it has {lines.count} of {wanted} samples", advice)

@@ -70,7 +70,7 @@ class Identified(InNotebook):
     stabilisation: Annotated[tuple[Stabilisation, ...], INNER]
     band: Annotated[tuple[float, float], FREQUENCY]
     noise: Array
-    warnings: tuple[str, ...]
+    data_warnings: tuple[str, ...]
     provenance: str
     peaks: tuple[Peak, ...] = ()
     delay: Annotated[float, TIME] = 0.0

@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.bands import TOGETHER, extents, sweeps
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
 from flexstage.experiment.identification.diagnosis.adequacy import Reach, few_lines
-from flexstage.experiment.identification.diagnosis.caution import Modes, warnings
+from flexstage.experiment.identification.diagnosis.data_warnings import Modes, data_warnings
 from flexstage.experiment.identification.diagnosis.driven import Drive, measure_drives
 from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
 from flexstage.experiment.identification.diagnosis.peaks import Left, peaks
@@ -89,9 +89,9 @@ def identify(
 
 
 def _with_doubts(found: Identified) -> Identified:
-    """What was found, with a caution for every channel that comes later than the others."""
+    """What was found, with a warning for every channel that comes later than the others."""
     late = tuple(late_channels(found))
-    return replace(found, warnings=(*found.warnings, *late)) if late else found
+    return replace(found, data_warnings=(*found.data_warnings, *late)) if late else found
 
 
 def _without_delay(known: Evidence, search: Search, found: Identified) -> Identified:
@@ -266,7 +266,7 @@ def _result(
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        warnings=warnings(known, Modes(poles, close, share[order], widening[order]), reach),
+        data_warnings=data_warnings(known, Modes(poles, close, share[order], widening[order]), reach),
         peaks=peaks(known, Left(lines, rest, poles), refused, lost),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )

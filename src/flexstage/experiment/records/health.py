@@ -1,6 +1,6 @@
 """Health of a record: what is wrong with it, by channel, and what is left of it when the user allows to go on.
 
-Everything is looked at in one pass; all that is found is told at once. Nothing is left out or cut off unless `Allow` says so.
+Everything is looked at in one pass; all that is found is told at once. Nothing is left out or cut off unless `FaultTolerance` says so.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from flexstage.base.finding import DesignError, Finding, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.experiment.records.numbers import Numbers, RecordNumbers, explained_share, gather
-from flexstage.experiment.records.options import Allow, matches
+from flexstage.experiment.records.options import FaultTolerance, matches
 from flexstage.experiment.records.record import Channel, Record, Responses, Role, rising_problem
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
@@ -34,8 +34,8 @@ _UNWINDOWED = (
 
 
 @dataclass(frozen=True)
-class Needs(CheckedFields):
-    """What is asked: `resolution` in Hz with so many `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
+class RecordRequirements(CheckedFields):
+    """Record requirements: `resolution` in Hz with so many `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
 
     `unrecorded` where nothing that drove the stage was recorded: there are no inputs then.
     """
@@ -52,7 +52,7 @@ class Needs(CheckedFields):
 class Fault:
     """One thing wrong with a record: what allows to go on (None: nothing does), the channel it is about, and what is told of it."""
 
-    kind: Allow | None
+    kind: FaultTolerance | None
     channel: str
     finding: Finding
 
@@ -70,17 +70,17 @@ class Examination(InNotebook):
         """What is told of all faults."""
         return tuple(fault.finding for fault in self.faults)
 
-    def channels(self, kinds: Iterable[Allow]) -> frozenset[str]:
+    def channels(self, kinds: Iterable[FaultTolerance]) -> frozenset[str]:
         """Channels with faults of those kinds."""
         known = frozenset(kinds)
         return frozenset(fault.channel for fault in self.faults if fault.kind in known and fault.channel)
 
 
-_NEEDS = Needs()
+_NEEDS = RecordRequirements()
 
 
 @check_arguments
-def examine(record: Record, needs: Needs = _NEEDS) -> Examination:
+def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examination:
     """All faults of a record.
 
     Samples that are no numbers; channels that are dead, constant, standing still, clipped or coarsely quantised; missing and unknown units;
@@ -99,12 +99,14 @@ def examine(record: Record, needs: Needs = _NEEDS) -> Examination:
         *_samples(record, found, where),
         *_units(record.channels, where),
         *_dependent(record, found, where),
-        *_roles(record, needs, where),
+        *_roles(record, requirements, where),
     ]
-    return Examination((*faults, *_extent(record, needs, where)), numbers, found.stretch)
+    return Examination((*faults, *_extent(record, requirements, where)), numbers, found.stretch)
 
 
-def usable_record(record: Record, allow: frozenset[Allow] = frozenset(), needs: Needs = _NEEDS) -> Record:
+def usable_record(
+    record: Record, accept_faults: frozenset[FaultTolerance] = frozenset(), requirements: RecordRequirements = _NEEDS
+) -> Record:
     """The record as it can be used: as it is where it is sound, else without what `allow` allows to leave out.
 
     Dead, dependent and unfitting channels go; of a record with gaps the longest whole stretch stays. Raises `DesignError` with every fault
@@ -113,17 +115,17 @@ def usable_record(record: Record, allow: frozenset[Allow] = frozenset(), needs: 
     >>> from flexstage.experiment.records.record import in_memory
     >>> noise = np.random.default_rng(1).normal(size=(4096, 3)) * [1.0, 0.0, 1.0]
     >>> three = [Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT), Channel("S2", "um", Role.OUTPUT)]
-    >>> usable_record(in_memory(three, 2048.0, noise), frozenset({Allow.DEAD})).names
+    >>> usable_record(in_memory(three, 2048.0, noise), frozenset({FaultTolerance.DEAD})).names
     ('u1', 'S2')
     """
-    found = examine(record, needs)
-    refused = [fault.finding for fault in found.faults if fault.kind not in allow]
+    found = examine(record, requirements)
+    refused = [fault.finding for fault in found.faults if fault.kind not in accept_faults]
     if refused:
         raise DesignError(refused)
-    dropped = found.channels({Allow.DEAD, Allow.DEPENDENT, Allow.NAMES})
+    dropped = found.channels({FaultTolerance.DEAD, FaultTolerance.DEPENDENT, FaultTolerance.NAMES})
     kept = record.select([name for name in record.names if name not in dropped]) if dropped else record
     where = record.source or record.name or "record"
-    left = [fault.finding for fault in _roles(kept, Needs(unrecorded=needs.unrecorded), where)]
+    left = [fault.finding for fault in _roles(kept, RecordRequirements(unrecorded=requirements.unrecorded), where)]
     if left:
         raise DesignError(left)
     if not any(found.numbers[name].broken for name in kept.names):
@@ -131,21 +133,24 @@ def usable_record(record: Record, allow: frozenset[Allow] = frozenset(), needs: 
     return kept.part(*(gather(kept).stretch if dropped else found.stretch))
 
 
-def responses_findings(responses: Responses, needs: Needs = _NEEDS) -> list[Fault]:
+def responses_findings(responses: Responses, requirements: RecordRequirements = _NEEDS) -> list[Fault]:
     """Faults of stored responses: units, names, frequencies that do not rise or do not reach the highest mode, a coherence above one.
 
     >>> one = Responses(np.array([1.0, 2.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.ones((2, 1, 1), complex))
-    >>> [fault.finding.what for fault in responses_findings(one, Needs(highest=5.0))]
+    >>> [fault.finding.what for fault in responses_findings(one, RecordRequirements(highest=5.0))]
     ['its responses end at 2 Hz, the highest mode is at 5 Hz']
     """
     where = responses.source or responses.name or "responses"
-    faults = [*_units((*responses.outputs, *responses.inputs), where), *_name_faults(responses.inputs, responses.outputs, needs, where)]
+    faults = [
+        *_units((*responses.outputs, *responses.inputs), where),
+        *_name_faults(responses.inputs, responses.outputs, requirements, where),
+    ]
     frequencies = responses.frequencies
     if (falling := rising_problem(frequencies)) is not None:
         faults.append(Fault(None, "", Finding(where, falling, "Export each frequency once, from the lowest to the highest")))
-    elif needs.highest is not None and needs.highest > frequencies[-1]:
-        what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {needs.highest:g} Hz"
-        faults.append(Fault(Allow.SLOW, "", Finding(where, what, 'Measure a wider band, or accept "slow" to use what there is')))
+    elif requirements.highest is not None and requirements.highest > frequencies[-1]:
+        what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {requirements.highest:g} Hz"
+        faults.append(Fault(FaultTolerance.SLOW, "", Finding(where, what, 'Measure a wider band, or accept "slow" to use what there is')))
     if responses.coherence is not None:
         faults += _coherence(responses.coherence, where)
     return faults
@@ -158,7 +163,7 @@ def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
         low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
         what = f"its coherence runs from {low:g} to {high:g}, outside 0 to 1 in {outside} of {coherence.size} values"
         advice = 'Check what was exported, or accept "clipped" to cut it off there'
-        yield Fault(Allow.CLIPPED, "", Finding(where, what, advice))
+        yield Fault(FaultTolerance.CLIPPED, "", Finding(where, what, advice))
 
 
 def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
@@ -170,9 +175,11 @@ def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault
             dead = _dead(record, channel, numbers) or _faint(record, found, channel, numbers)
             windowed = _force_window(record, channel, numbers)
             if windowed:
-                yield Fault(Allow.WINDOWED, channel.name, Finding(place, windowed, _UNWINDOWED))
+                yield Fault(FaultTolerance.WINDOWED, channel.name, Finding(place, windowed, _UNWINDOWED))
             elif dead:
-                yield Fault(Allow.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or accept "dead" to leave it out'))
+                yield Fault(
+                    FaultTolerance.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or accept "dead" to leave it out')
+                )
             else:
                 yield from _clipped(record, channel, numbers, place)
 
@@ -183,12 +190,12 @@ def _broken_samples(record: Record, channel: Channel, numbers: Numbers, place: s
     first = record.start + numbers.first_broken / record.rate
     what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"
     if share > _BROKEN_SHARE:
-        yield Fault(Allow.DEAD, channel.name, Finding(place, what, 'Record it anew, or accept "dead" to leave it out'))
+        yield Fault(FaultTolerance.DEAD, channel.name, Finding(place, what, 'Record it anew, or accept "dead" to leave it out'))
     else:
         advice = (
             f'The longest stretch without has {stop - start} samples ({(stop - start) / record.rate:.4g} s): accept "gaps" to use it alone'
         )
-        yield Fault(Allow.GAPS, channel.name, Finding(place, what, advice))
+        yield Fault(FaultTolerance.GAPS, channel.name, Finding(place, what, advice))
 
 
 def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
@@ -236,7 +243,9 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers, place: str) -> 
         span = f"{numbers.low:.6g} and {numbers.high:.6g}{unit}"
         what = f"it has {round(numbers.levels) + 1} levels between {span}: its resolution is too coarse"
         yield Fault(
-            Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a smaller range, or accept "clipped" to use it as it is')
+            FaultTolerance.CLIPPED,
+            channel.name,
+            Finding(place, what, 'Record with a smaller range, or accept "clipped" to use it as it is'),
         )
         return
     ends = (
@@ -247,7 +256,9 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers, place: str) -> 
         if at >= _PILE and at > _PILE_RATIO * after:
             what = f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {value:.6g}{unit}"
             yield Fault(
-                Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a wider range, or accept "clipped" to use it as it is')
+                FaultTolerance.CLIPPED,
+                channel.name,
+                Finding(place, what, 'Record with a wider range, or accept "clipped" to use it as it is'),
             )
 
 
@@ -256,7 +267,7 @@ def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
         problem = unit_problem(channel.unit)
         if problem is not None:
             advice = 'State it (units, by names or patterns, such as "S*=um"), or accept "units" to use the numbers as they are'
-            yield Fault(Allow.UNITS, channel.name, Finding(f"{where}: {channel.name}", problem, advice))
+            yield Fault(FaultTolerance.UNITS, channel.name, Finding(f"{where}: {channel.name}", problem, advice))
 
 
 def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
@@ -273,7 +284,7 @@ def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fau
         advice = (
             'Drive the inputs with independent noise, or accept "dependent" to leave it out: its effect is then counted with the others'
         )
-        yield Fault(Allow.DEPENDENT, name, Finding(f"{where}: {name}", what, advice))
+        yield Fault(FaultTolerance.DEPENDENT, name, Finding(f"{where}: {name}", what, advice))
 
 
 def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
@@ -282,15 +293,17 @@ def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
     return np.maximum(0.0, (shares - lost) / (1.0 - lost))
 
 
-def _roles(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
+def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
             advice = 'Say what it is (inputs, outputs), or accept "names" to leave it out'
             yield Fault(
-                Allow.NAMES, channel.name, Finding(f"{where}: {channel.name}", "it is neither known as an input nor as an output", advice)
+                FaultTolerance.NAMES,
+                channel.name,
+                Finding(f"{where}: {channel.name}", "it is neither known as an input nor as an output", advice),
             )
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
-        if kind == "input" and needs.unrecorded:
+        if kind == "input" and requirements.unrecorded:
             if channels:
                 what = f"{', '.join(each.name for each in channels)}: taken for inputs, where none is said to have been recorded"
                 yield Fault(None, "", Finding(where, what, "Name the channels that count (only), or say that inputs were recorded"))
@@ -299,38 +312,43 @@ def _roles(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
             other = ", or say what else moved the stage (excitation)" if kind == "input" else ""
             yield Fault(None, "", Finding(where, what, f"Name the {kind}s ({kind}s), by names or patterns{other}"))
-    yield from _name_faults(record.inputs, record.outputs, needs, where)
+    yield from _name_faults(record.inputs, record.outputs, requirements, where)
 
 
-def _name_faults(inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], needs: Needs, where: str) -> Iterator[Fault]:
+def _name_faults(
+    inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], requirements: RecordRequirements, where: str
+) -> Iterator[Fault]:
     """Channels the stage does not have, and units that cannot be those of the stage's channels."""
-    for kind, channels, expected in (("input", inputs, needs.inputs), ("output", outputs, needs.outputs)):
+    for kind, channels, expected in (("input", inputs, requirements.inputs), ("output", outputs, requirements.outputs)):
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
             place = f"{where}: {channel.name}"
             if channel.name not in known:
                 advice = f'{suggest_nearest(channel.name, known)}; rename it, or accept "names" to leave it out'
-                yield Fault(Allow.NAMES, channel.name, Finding(place, f"the stage has no {kind} of this name", advice))
+                yield Fault(FaultTolerance.NAMES, channel.name, Finding(place, f"the stage has no {kind} of this name", advice))
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"
                 yield Fault(
-                    Allow.UNITS,
+                    FaultTolerance.UNITS,
                     channel.name,
                     Finding(place, what, 'State its unit, or accept "units" to use the numbers as they are'),
                 )
 
 
-def _extent(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
-    if needs.resolution is not None and record.duration * needs.resolution < needs.averages:
-        count = record.duration * needs.resolution
-        what = (
-            f"{record.duration:.4g} s give {count:.3g} averages at a resolution of {needs.resolution:g} Hz, {needs.averages} are asked for"
-        )
-        coarser = needs.averages / record.duration
+def _extent(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
+    if requirements.resolution is not None and record.duration * requirements.resolution < requirements.averages:
+        count = record.duration * requirements.resolution
+        required = f"at a resolution of {requirements.resolution:g} Hz, {requirements.averages} are required"
+        what = f"{record.duration:.4g} s give {count:.3g} averages {required}"
+        coarser = requirements.averages / record.duration
         yield Fault(
-            Allow.SHORT, "", Finding(where, what, f'Ask for {coarser:.3g} Hz, record longer, or accept "short" to use fewer averages')
+            FaultTolerance.SHORT,
+            "",
+            Finding(where, what, f'Ask for {coarser:.3g} Hz, record longer, or accept "short" to use fewer averages'),
         )
-    if needs.highest is not None and record.rate <= 2.0 * needs.highest:
-        what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {needs.highest:g} Hz"
-        advice = f'Sample at {2.56 * needs.highest:.4g} Hz or more, or accept "slow" to find what lies below {0.5 * record.rate:g} Hz'
-        yield Fault(Allow.SLOW, "", Finding(where, what, advice))
+    if requirements.highest is not None and record.rate <= 2.0 * requirements.highest:
+        what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {requirements.highest:g} Hz"
+        advice = (
+            f'Sample at {2.56 * requirements.highest:.4g} Hz or more, or accept "slow" to find what lies below {0.5 * record.rate:g} Hz'
+        )
+        yield Fault(FaultTolerance.SLOW, "", Finding(where, what, advice))

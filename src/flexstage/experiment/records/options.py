@@ -33,8 +33,8 @@ class Kind(Enum):
     RESPONSES = "responses"
 
 
-class Allow(Enum):
-    """What may be used although it is bad, and how: nothing of this is done unless the user says so."""
+class FaultTolerance(Enum):
+    """Accepted fault of a record, and how its data are used: no fault is accepted unless the user names it."""
 
     TRUNCATED = "truncated"
     """Use what a file that breaks off still holds."""
@@ -105,7 +105,7 @@ class Options(CheckedFields):
     units: tuple[tuple[str, str], ...] = ()
     kind: Kind | None = None
     arrays: Arrays = Arrays()
-    allow: frozenset[Allow] = frozenset()
+    accept_faults: frozenset[FaultTolerance] = frozenset()
 
 
 def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:

@@ -20,12 +20,12 @@ from flexstage.experiment.show.figures import (
     stabilisation_figure,
 )
 from flexstage.experiment.show.tables import (
+    data_warning_table,
     identified_table,
     measured_shape_table,
     motion_explained_text,
     peak_table,
     recorded_table,
-    warning_table,
 )
 from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
@@ -54,7 +54,7 @@ def found_section(seen: Identification) -> Section | None:
     found = seen.found
     text = text if found.inputs else _FLOOR
     shapes = measured_shape_table(found) if len(found.frequencies) else None
-    blocks = [recorded_table(seen.test), warning_table(found.warnings), identified_table(found), peak_table(found.peaks), shapes]
+    blocks = [recorded_table(seen.test), data_warning_table(found.data_warnings), identified_table(found), peak_table(found.peaks), shapes]
     return section("Modes found", [*blocks, Prose(text)])
 
 
@@ -156,7 +156,7 @@ def _pictures(found: Identified, shapes: StageShapes, seen: Scene) -> Iterator[P
 
 
 def compare_section(found: Compared) -> Section | None:
-    """Theory, FEA and experiment: picture, tables, cautions."""
+    """Theory, FEA and experiment: picture, tables, warnings."""
     drawn = to_svg(compare_figure(found), "compared", "Frequencies by theory, FEA and experiment")
     shown = "theory, FEA and experiment" if found.fea is not None else "theory and experiment"
     caption = f"Frequencies by {shown}; below, how far off the experiment. Whiskers and bands: the experiment's 95 % intervals."
@@ -165,4 +165,4 @@ def compare_section(found: Compared) -> Section | None:
 
 def compare_tables(found: Compared) -> tuple[Table | None, ...]:
     """The tables of a comparison, in order."""
-    return compare_table(found), repeated_table(found), further_table(found), warning_table(found.warnings)
+    return compare_table(found), repeated_table(found), further_table(found), data_warning_table(found.data_warnings)

@@ -170,15 +170,15 @@ def peak_table(peaks: Sequence[Peak]) -> Table | None:
     return make_table("Peaks seen, not confirmed as modes", heads, rows, notes=notes)
 
 
-def warning_table(warnings: Sequence[str]) -> Table | None:
+def data_warning_table(warnings: Sequence[str]) -> Table | None:
     """What the data cannot tell; `None` where there is nothing of the kind.
 
-    >>> warning_table([]) is None
+    >>> data_warning_table([]) is None
     True
     """
     if not warnings:
         return None
-    return make_table("What the data cannot tell", ["caution"], [(Cell(text, Mark.WARN),) for text in warnings])
+    return make_table("What the data cannot tell", ["warning"], [(Cell(text, Mark.WARN),) for text in warnings])
 
 
 def motion_explained_text(explained: Array) -> str:

@@ -18,8 +18,8 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 @dataclass(frozen=True)
-class Known(CheckedFields):
-    """What is known before the test, each as a relative standard deviation: all of it assumed unless it is stated.
+class Prior(CheckedFields):
+    """Prior of an update, each as a relative standard deviation: all of it assumed unless it is stated.
 
     `prior` of every free number, `priors` those of single ones by address; `model_error` of theory's frequencies, whatever its numbers;
     `gain_error` that of static gains (of theory, and of the scale of gauges and drives), `None` where gains are not compared.
@@ -31,7 +31,7 @@ class Known(CheckedFields):
     gain_error: float | None = None
 
 
-DEFAULT = Known()
+DEFAULT = Prior()
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Free:
         return result
 
 
-def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> Free:
+def free(mechanism: Mechanism, names: Sequence[str], known: Prior = DEFAULT) -> Free:
     """The numbers at these addresses, freed. Raises `DesignError` with every address that is unknown, ambiguous, no number, or nought.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -81,7 +81,7 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> 
     )
 
 
-def _error_findings(known: Known) -> list[Finding]:
+def _error_findings(known: Prior) -> list[Finding]:
     stated = {"prior": known.prior, "model error": known.model_error} | {f"prior of {name}": share for name, share in known.priors.items()}
     stated |= {} if known.gain_error is None else {"gain error": known.gain_error}
     advice = 'Give a relative standard deviation between 0.0001 % and 100 %, e.g. "5 %"'

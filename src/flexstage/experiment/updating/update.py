@@ -21,7 +21,7 @@ from flexstage.experiment.comparison import Compared, compare, shared_sensors
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.updating.fit import Fitted, Problem, gauss_newton
-from flexstage.experiment.updating.free import DEFAULT, Free, Known, free
+from flexstage.experiment.updating.free import DEFAULT, Free, Prior, free
 from flexstage.experiment.updating.gains import Gains, measured_gains
 from flexstage.experiment.updating.rows import (
     Design,
@@ -140,10 +140,10 @@ class Updated(InNotebook):
     chi_square_before: float
     chi_square: float
     steps: int
-    assumed: Known
+    assumed: Prior
     mechanism: Mechanism
     compared: Compared
-    warnings: tuple[str, ...]
+    data_warnings: tuple[str, ...]
     provenance: str
 
     @property
@@ -244,7 +244,7 @@ class Updated(InNotebook):
 
 @check_arguments
 @one_thread
-def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Known = DEFAULT) -> Updated:
+def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Prior = DEFAULT) -> Updated:
     """The values of the numbers at `names` that make the lumped model agree best with a test, given what is known before.
 
     Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8): minimise
@@ -287,7 +287,7 @@ class _Data:
     """The data with their weights, and the problem they make of free numbers; `gains` is absent where they are not compared."""
 
     freed: Free
-    known: Known
+    known: Prior
     rows: tuple[ModeRow, ...]
     gains: Gains | None
 
@@ -364,12 +364,12 @@ def _as_result(data: _Data, found: Fitted[Design], compared: Compared, steps: in
         assumed=data.known,
         mechanism=found.state.mechanism,
         compared=compared,
-        warnings=(*compared.warnings, *_cautions(data, found, compared)),
+        data_warnings=(*compared.data_warnings, *_warnings(data, found, compared)),
         provenance=compared.provenance,
     )
 
 
-def _cautions(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
+def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
     """What not to rely on, besides what the comparison says."""
     freed, errors = data.freed, data.known
     if scipy.special.chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:

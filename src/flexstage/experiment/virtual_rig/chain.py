@@ -14,8 +14,8 @@ import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.experiment.virtual_rig.inputs import InputSignal
 from flexstage.experiment.virtual_rig.plan import TAPER, Plan
-from flexstage.experiment.virtual_rig.recorded import Tap
 from flexstage.mechanism.mechanism import Damping, ModalDamping, StructuralDamping
 from flexstage.models.linear.damping import modal_ratios
 from flexstage.models.linear.eigen import eigen
@@ -105,7 +105,7 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
         finer=finer,
         frequencies=lines,
         strokes=strokes,
-        inputs=commands.astype(complex) if plan.setup.tap is Tap.COMMAND else filtered[:, None] * strokes,
+        inputs=commands.astype(complex) if plan.setup.input_signal is InputSignal.COMMAND else filtered[:, None] * strokes,
         outputs=seen[:, :, None] * motion,
         gauge=white * (plan.densities * np.sqrt(0.5 * rate)),
         note=_note(damping),

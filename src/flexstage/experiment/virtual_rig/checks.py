@@ -8,8 +8,8 @@ import numpy as np
 
 from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.experiment.virtual_rig.chain import Chain
+from flexstage.experiment.virtual_rig.inputs import InputQuantity
 from flexstage.experiment.virtual_rig.plan import Plan, drivable_actuators, highest_mode
-from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -110,13 +110,13 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
     >>> from flexstage.models.mapped import mapped
     >>> from flexstage.experiment.virtual_rig.plan import plan_test
     >>> stage = double_triangle()
-    >>> list(plan_findings(plan_test(stage, mapped(stage), RigSetup(seconds=1.0, recorded=Recorded.VOLTAGE))))
+    >>> list(plan_findings(plan_test(stage, mapped(stage), RigSetup(seconds=1.0, input_quantity=InputQuantity.VOLTAGE))))
     []
     """
     setup = plan.setup
     for name, volts, capacitance in zip(plan.actuators, plan.volts, plan.capacitances, strict=True):
         if np.isnan(volts) and (
-            setup.drive.voltage is not None or setup.recorded is Recorded.VOLTAGE or setup.amplifier.current is not None
+            setup.drive.voltage is not None or setup.input_quantity is InputQuantity.VOLTAGE or setup.amplifier.current is not None
         ):
             yield Finding(name, "its stack states no range of voltage", "State voltage_low and voltage_high, or use strokes")
         if np.isnan(capacitance) and (setup.amplifier.resistance is not None or setup.amplifier.current is not None):

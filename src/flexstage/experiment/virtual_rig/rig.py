@@ -10,8 +10,8 @@ from flexstage.experiment.records.record import Channel, Record, Role
 from flexstage.experiment.spectral.cross_spectra import Tell
 from flexstage.experiment.virtual_rig.chain import chain
 from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
+from flexstage.experiment.virtual_rig.inputs import InputQuantity
 from flexstage.experiment.virtual_rig.plan import Plan, plan_test
-from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.mechanism import Damping, Mechanism
@@ -63,7 +63,7 @@ def simulate_test(
     require(plan_findings(plan))
     found = chain(model, plan, law)
     require(range_findings(plan, found))
-    scale = plan.volts if setup.recorded is Recorded.VOLTAGE else np.full(len(plan.actuators), _MICROMETRE)
+    scale = plan.volts if setup.input_quantity is InputQuantity.VOLTAGE else np.full(len(plan.actuators), _MICROMETRE)
     source = f"seed {setup.seed}; {found.note}; {mechanism.name or 'stage'}; {model.provenance}"  # forms cut names: what matters first
     return Simulated(plan, found, scale, _MICROMETRE, source, tell)
 
@@ -81,6 +81,6 @@ def as_record(test: Simulated) -> Record:
 
 
 def _channels(plan: Plan) -> tuple[Channel, ...]:
-    unit = "V" if plan.setup.recorded is Recorded.VOLTAGE else "um"
+    unit = "V" if plan.setup.input_quantity is InputQuantity.VOLTAGE else "um"
     inputs = (Channel(name, unit, Role.INPUT) for name in plan.actuators)
     return (*inputs, *(Channel(name, f"u{read}", Role.OUTPUT) for name, read in zip(plan.gauges, plan.units, strict=True)))

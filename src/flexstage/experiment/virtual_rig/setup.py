@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.experiment.virtual_rig.recorded import Recorded, Tap
+from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.parts.amplifier import Amplifier
 
 
@@ -64,6 +64,6 @@ class RigSetup(CheckedFields):
     amplifier: Amplifier = field(default_factory=Amplifier)
     filter: AntiAlias = field(default_factory=AntiAlias)
     sensing: Sensing = field(default_factory=Sensing)
-    tap: Tap = Tap.MONITOR
-    recorded: Recorded = Recorded.STROKE
+    input_signal: InputSignal = InputSignal.MONITOR
+    input_quantity: InputQuantity = InputQuantity.STROKE
     delay: float = 0.0

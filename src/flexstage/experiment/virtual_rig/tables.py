@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexstage.experiment.virtual_rig.recorded import Recorded
+from flexstage.experiment.virtual_rig.inputs import InputQuantity
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.show.display import format_value, number
 from flexstage.show.table import Cell, Mark, Table, make_table
@@ -19,8 +19,8 @@ def rig_table(test: Simulated) -> Table:
     >>> rig_table(simulate_test(stage, mapped(stage), RigSetup(seconds=1.0))).texts()[-1]
     ['S6', 'output', 'um', '19.53 um', '10 nm']
     """
-    plan, unit = test.plan, "V" if test.plan.setup.recorded is Recorded.VOLTAGE else "um"
-    volts = plan.setup.recorded is Recorded.VOLTAGE
+    plan, unit = test.plan, "V" if test.plan.setup.input_quantity is InputQuantity.VOLTAGE else "um"
+    volts = plan.setup.input_quantity is InputQuantity.VOLTAGE
     driven = [
         (Cell(name, Mark.STRONG), "input", unit, format_value(rms * (scale if volts else 1.0), "V" if volts else "m", 4), "")
         for name, rms, scale in zip(plan.actuators, test.chain.input_rms, test.input_scale, strict=True)

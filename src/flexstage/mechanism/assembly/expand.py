@@ -15,7 +15,7 @@ from flexstage.base.number import Array, Number, Table, Vector, stack
 from flexstage.mechanism.addresses.path import complete, has_member, replace_member
 from flexstage.mechanism.assembly.likeness import drawn_units, link_lineage
 from flexstage.mechanism.assembly.misalignment import MISALIGNED, misalign
-from flexstage.mechanism.assembly.pattern import Facing, Normal, Pattern, Polar, Pose, copy_names
+from flexstage.mechanism.assembly.pattern import InstanceOrientation, Normal, Pattern, Polar, Pose, copy_names
 from flexstage.mechanism.assembly.sight import (
     PlacedGauge,
     PlacedStop,
@@ -29,8 +29,8 @@ from flexstage.mechanism.assembly.sight import (
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, GaugeSum, Link, LinkProbe, Mechanism, Probe, Stop, posed
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, PlacedSolid, owner_of, pierce
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
-from flexstage.parts.given import Joint
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
 from flexstage.parts.material import Material, Paired
 from flexstage.parts.part import Part, Restricted, actuator_of, counter_of, inner, is_actuator, material_of, ports_of
@@ -190,10 +190,10 @@ class Assembly:
 def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
     """The frames of a pattern's copies in the stage's frame.
 
-    >>> tangent = Polar(radius=0.1, first=0.0, facing=Facing.TANGENT)
+    >>> tangent = Polar(radius=0.1, first=0.0, facing=InstanceOrientation.TANGENT)
     >>> copy_frames(tangent, 1)[0].direction(np.array([1.0, 0, 0])).round(9).tolist()
     [0.0, 1.0, 0.0]
-    >>> upright = Polar(radius=0.1, first=0.0, facing=Facing.AXIS)
+    >>> upright = Polar(radius=0.1, first=0.0, facing=InstanceOrientation.AXIS)
     >>> copy_frames(upright, 1)[0].rotation.T.tolist()  # x up, z inward, and y = z cross x
     [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
     """
@@ -216,10 +216,12 @@ def _reflect(frame: Frame, mirror: Normal | None) -> Frame:
 
 def _polar_frame(pattern: Polar, angle: Number) -> Frame:
     position = stack((pattern.radius * np.cos(angle), pattern.radius * np.sin(angle), pattern.height))
-    if pattern.facing is Facing.AXIS:
+    if pattern.facing is InstanceOrientation.AXIS:
         upright = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
         return Frame(turn_z(angle + pattern.turn) @ upright, position)
-    quarter = {Facing.OUTWARD: 0.0, Facing.TANGENT: 0.5 * np.pi, Facing.INWARD: np.pi}[pattern.facing]
+    quarter = {InstanceOrientation.OUTWARD: 0.0, InstanceOrientation.TANGENT: 0.5 * np.pi, InstanceOrientation.INWARD: np.pi}[
+        pattern.facing
+    ]
     return Frame(turn_z(angle + quarter + pattern.turn), position)
 
 

@@ -32,8 +32,8 @@ def middle(start: Vector, end: Vector) -> Vector:
     return (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]), 0.5 * (start[2] + end[2]))
 
 
-class Facing(Enum):
-    """Where the x axis of a copy points: along the circle (counter-clockwise), outward, inward, or along the pattern's axis."""
+class InstanceOrientation(Enum):
+    """Orientation of an instance's x axis: along the circle (counter-clockwise), outward, inward, or along the pattern's axis."""
 
     TANGENT = "tangent"
     OUTWARD = "outward"
@@ -54,14 +54,14 @@ class Polar(Description):
     """Copies at equal steps on a circle around the stage's z axis.
 
     `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then
-    turned by `turn` about z. Each copy's z axis is the stage's z axis (for `Facing.AXIS`: x is up and z points inward, before `turn`).
-    `step` is the angle between copies; absent: a full circle shared by the copies. With `mirror` all copies are the images of these in
-    the stage's plane of that normal.
+    turned by `turn` about z. Each copy's z axis is the stage's z axis (`InstanceOrientation.AXIS`: x up, z inward). `step` is
+    the angle between copies; absent: a full circle shared by the copies. With `mirror` all copies are the images of these in the stage's
+    plane of that normal.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]
     first: Annotated[Number, ANGLE]
-    facing: Facing
+    facing: InstanceOrientation
     height: Annotated[Number, LENGTH] = 0.0
     turn: Annotated[Number, ANGLE] = 0.0
     step: Annotated[Number, ANGLE] | None = None

@@ -13,7 +13,7 @@ from flexstage.base.number import Array, Number
 from flexstage.mechanism.assembly.pattern import copy_names
 from flexstage.mechanism.mechanism import GROUND, GaugePlace, GaugeSum, LinkProbe, Mechanism, Probe, Stop
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.gauge import Instrument, Positive, combine_gauges
+from flexstage.parts.gauge import Instrument, SensorSense, combine_gauges
 from flexstage.parts.part import Part, span
 from flexstage.spatial.frame import Frame
 
@@ -70,7 +70,7 @@ def place_stop(stop: Stop, frame: Frame) -> PlacedStop:
 
 def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:
     """What a gauge sees that stands at a frame."""
-    sign = -1.0 if probe.positive is Positive.CLOSES else 1.0
+    sign = -1.0 if probe.positive is SensorSense.CLOSES else 1.0
     return Sight(probe.body, probe.base or GROUND, frame, frame, gauge.freedom.index, sign)
 
 

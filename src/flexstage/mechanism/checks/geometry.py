@@ -21,8 +21,8 @@ from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.grammar.node import join
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Extrusion, Imported, Inertia, Solid, winding
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.condensation import superelement_findings
-from flexstage.parts.given import Given
 from flexstage.parts.mass import tensor
 from flexstage.parts.part import Part, Restricted, inner
 from flexstage.parts.shape import Elastic, Order, Shaped
@@ -127,7 +127,7 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
     yield from _orders(where, part.orders if isinstance(part, Elastic) else ())
     if isinstance(part, Elastic):
         yield from (replace(fault, where=join(where, fault.where) if fault.where else where) for fault in part.faults)
-    if isinstance(part, Given):
+    if isinstance(part, ComplianceMatrix):
         yield from _given_findings(where, part)
         yield from () if part.inertia is None else _inertia(f"{where}.inertia", part.inertia)
 
@@ -165,7 +165,7 @@ class _Order:
             yield Finding(f"{self.where}{at}", f"found {low}, which is not {word} {self.other}, {high}", self.advice)
 
 
-def _given_findings(where: str, part: Given) -> Iterator[Finding]:
+def _given_findings(where: str, part: ComplianceMatrix) -> Iterator[Finding]:
     matrix = np.real(stack(part.compliance))
     mirrored = np.swapaxes(matrix, -1, -2)
     scale = np.sqrt(np.abs(np.einsum("...ii->...i", matrix)))

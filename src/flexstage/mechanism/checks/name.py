@@ -14,7 +14,7 @@ from flexstage.mechanism.assembly.sight import gauge_findings
 from flexstage.mechanism.grammar.grammar import RESERVED
 from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NOT_GROWING, PLATFORM, GaugeSum, Link, Mechanism, Unit, posed
 from flexstage.parts.body import Body, owner_of
-from flexstage.parts.given import Given
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.part import counter_of, material_of
 
 MOST_COPIES = 360
@@ -138,7 +138,7 @@ def _materials(mechanism: Mechanism) -> Iterator[Finding]:
     for name, part in mechanism.parts.items():
         yield from _check_known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
         yield from _check_known(f"parts.{name}.counter", "material", counter_of(part), mechanism.materials)
-        if isinstance(part, Given):
+        if isinstance(part, ComplianceMatrix):
             yield from _check_known(f"parts.{name}.replaces", "part", part.replaces or None, mechanism.parts)
     for where, body in _all_bodies(mechanism):
         for name, solid in body.solids.items():

@@ -12,8 +12,8 @@ from flexstage.mechanism.assembly.pattern import Pattern, Pose
 from flexstage.mechanism.checks.value import LARGEST, first_failing
 from flexstage.mechanism.mechanism import Link, Mechanism, posed
 from flexstage.parts.body import Body
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.given import Joint
 from flexstage.parts.part import Part, Restricted, ports_of
 from flexstage.parts.stated import is_even
 

@@ -15,7 +15,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
-from flexstage.parts.given import Given
+from flexstage.parts.compliance_matrix import ComplianceMatrix
 
 if TYPE_CHECKING:
     import tomlkit
@@ -30,14 +30,14 @@ KEPT = "-drawn"
 class StandIn:
     """A `compliance_matrix` part that stands for the drawn one its `replaces` names, at the `links` (drawn addresses) that are listed."""
 
-    given: Given
+    given: ComplianceMatrix
     links: tuple[str, ...]
 
     @property
     def drawn_name(self) -> str:
         """The name that the drawn part had.
 
-        >>> StandIn(Given(((0.0,) * 6,) * 6, (), replaces="neck-drawn"), ()).drawn_name
+        >>> StandIn(ComplianceMatrix(((0.0,) * 6,) * 6, (), replaces="neck-drawn"), ()).drawn_name
         'neck'
         """
         return self.given.replaces.removesuffix(KEPT)
@@ -51,7 +51,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads
     >>> unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    >>> leaf = StandIn(Given(unit, free=(), replaces="leaf-drawn"), ("links.left", "links.right"))
+    >>> leaf = StandIn(ComplianceMatrix(unit, free=(), replaces="leaf-drawn"), ("links.left", "links.right"))
     >>> text = write_stand_ins(dumps(parallelogram()), {"leaf": leaf}, "derived test")
     >>> loads(text).parts["leaf"].replaces, "leaf-drawn" in loads(text).parts
     ('leaf-drawn', True)

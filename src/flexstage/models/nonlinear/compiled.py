@@ -17,7 +17,7 @@ from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import gauss
 from flexstage.models.nonlinear.graph import Rest
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads, Pose
+from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions
 
 _MOST = {"points": 24, "modes": 48, "fields": 24, "unknowns": 150}
 """What the kernel has room for; and unknowns of bodies, beyond which LAPACK's blocks are faster than lanes."""
@@ -102,7 +102,7 @@ def tables(model: Nonlinear) -> Tables | None:
     return Tables(tuple(sizes for sizes, _ in known), tuple(arrays for _, arrays in known))
 
 
-def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, effort: Effort, rest: Rest | None) -> Ended:
+def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, rest: Rest | None) -> Ended:
     """The iterations of every case, in C; with a `rest`, which holds at these poses, at most one. Needs `kernel` and `tables`.
 
     The same as `newton.iterate`, but for rounding, to the bit independent of what cases are computed together.
@@ -116,8 +116,8 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, effort: Effort
     told = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
     given = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
     held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | told | given
-    groups, settings = _groups(model, pose), (model.size, model.reach, effort.step, effort.gap, effort.limit)
-    sizes = (cases, len(model.bodies), pose.held.shape[1], len(groups), len(held["body"]), effort.iterations, int(np.any(loads.gravity)))
+    groups, settings = _groups(model, pose), (model.size, model.reach, options.step, options.gap, options.limit)
+    sizes = (cases, len(model.bodies), pose.held.shape[1], len(groups), len(held["body"]), options.iterations, int(np.any(loads.gravity)))
     task: Any = _Task()
     _fill(task, dict(zip((*_SIZES, *_SETTINGS), (*sizes, *settings), strict=True)), held)
     task.group = ctypes.addressof(groups)

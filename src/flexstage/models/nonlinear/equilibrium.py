@@ -18,7 +18,7 @@ from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, Task, equilibr
 from flexstage.models.nonlinear.paths.arc import rescue
 from flexstage.models.nonlinear.paths.follow import continued
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
+from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.spatial.rotation import logarithm
 
@@ -120,7 +120,7 @@ def why_without(status: int, share: float) -> str:
         return f"equilibrium was followed to {share:.3g} of the way from the unloaded stage: a state beyond is not its continuation"
     what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not settle"
     far = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the way to it"
-    return f"{what} under the whole load; {far}. It may end there: fs.trace follows a load by arc length, fs.critical tells what gives way"
+    return f"{what} under the whole load; {far}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
 def require_equilibrium(found: State) -> None:
@@ -153,7 +153,7 @@ def equilibrium(
     weight: Number = 1.0,
     stated: Number = 1.0,
     start: State | None = None,
-    effort: Effort = USUAL,
+    options: SolverOptions = USUAL,
 ) -> State:
     """The equilibrium under `loads`: strokes and forces by actuator, wrenches by component (`platform.fy`), numbers or arrays of cases.
 
@@ -162,7 +162,7 @@ def equilibrium(
     their directions. Every case starts from the drawn position, or from `start`, and takes its whole load at once, or in steps, or by arc
     length up to where the load turns; one without an equilibrium that is found so is NaN and says so in `status`. So is a stable one found
     from the drawn position that is not the continuation of the unloaded stage as all its loads and held coordinates grow together, unless
-    `effort` goes `past` limits or takes no `arcs`. Raises `DesignError` for names that the stage does not have.
+    `options` go `past` limits or take no `arcs`. Raises `DesignError` for names that the stage does not have.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -172,9 +172,9 @@ def equilibrium(
     """
     asked = _asked(model, loads or {}, hold or {}, weight, stated)
     first = _first(model, start, asked.hold, len(asked.loads.inputs))
-    found = rescue(model, asked.loads, asked.hold, equilibrate(model, first, asked.loads, asked.hold, effort), effort)
+    found = rescue(model, asked.loads, asked.hold, equilibrate(model, first, asked.loads, asked.hold, options), options)
     if start is None:
-        found = _continued(model, asked, found, effort)
+        found = _continued(model, asked, found, options)
     return state(model, asked.loads, asked.hold, found, (asked.shape, asked.held))
 
 
@@ -185,7 +185,7 @@ def equilibria(
     hold: Mapping[str, Number] | Sequence[Mapping[str, Number]] | None = None,
     weight: Number = 1.0,
     stated: Number = 1.0,
-    effort: Effort = USUAL,
+    options: SolverOptions = USUAL,
 ) -> list[State]:
     """The states of several designs of one structure under the same loads, in one run: those that `equilibrium` finds of each.
 
@@ -204,18 +204,18 @@ def equilibria(
     asked = [_asked(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
     starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, asked, strict=True)]
     tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, asked, strict=True)]
-    found = equilibrate_designs(tasks, effort)
-    rescued = (rescue(each.model, each.loads, each.hold, one, effort) for each, one in zip(tasks, found, strict=True))
+    found = equilibrate_designs(tasks, options)
+    rescued = (rescue(each.model, each.loads, each.hold, one, options) for each, one in zip(tasks, found, strict=True))
     return [
-        state(model, each.loads, each.hold, _continued(model, each, one, effort), (each.shape, each.held))
+        state(model, each.loads, each.hold, _continued(model, each, one, options), (each.shape, each.held))
         for model, each, one in zip(models, asked, rescued, strict=True)
     ]
 
 
-def _continued(model: Nonlinear, asked: _Asked, found: Found, effort: Effort) -> Found:
+def _continued(model: Nonlinear, asked: _Asked, found: Found, options: SolverOptions) -> Found:
     """What was found, where it is the continuation of the unloaded stage; else that, or why there is none."""
     known = np.flatnonzero(found.status == Status.CONVERGED)
-    if not effort.arcs or effort.past or not known.size:
+    if not options.arcs or options.past or not known.size:
         return found
     one, none = known[:1], np.zeros(1)
     loads, hold = asked.loads.of(one).times(none), replace(asked.hold.of(one), value=0.0 * asked.hold.value[one])

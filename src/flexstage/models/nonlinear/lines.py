@@ -12,7 +12,7 @@ from flexstage.models.nonlinear.elements.condense import system
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.graph import Bent, assemble, follow
 from flexstage.models.nonlinear.linearise import flexure_motions, modal_motions
-from flexstage.models.nonlinear.paths.critical import Critical
+from flexstage.models.nonlinear.paths.critical_load import Critical
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,14 +12,14 @@ from flexstage.models.nonlinear.compiled import iterate_compiled, kernel, tables
 from flexstage.models.nonlinear.elements.hold import Hold
 from flexstage.models.nonlinear.graph import Rest, System, advance, apart, assemble, rest
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
+from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status, put
 from flexstage.models.nonlinear.walk import walked
 
 _CHUNK, _STREAM, _DESIGNS = 128, 2048, 32
 """Cases at once, which the processor's caches keep; of a stage whose iterations are all in C, where lanes refill; and designs."""
 
 
-USUAL = Effort()
+USUAL = SolverOptions()
 TOLD = ("status", "iterations", "residual", "reached")
 """What is told of every case."""
 _GOES_ON = -1
@@ -45,23 +45,23 @@ class Found:
         return Found(self.pose.of(cases), *(getattr(self, name)[cases] for name in TOLD))
 
 
-def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort = USUAL) -> Found:
+def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options: SolverOptions = USUAL) -> Found:
     """The equilibrium of every case, the whole load at once; what fails so is loaded in steps."""
     cases = np.arange(len(loads.inputs))
     most = _STREAM if _all_compiled(model, hold) else _CHUNK
-    chunks = [search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases, most)]
+    chunks = [search(model, start.of(part), loads.of(part), hold.of(part), options) for part in _split(cases, most)]
     found = join(chunks)
-    return _by_steps(model, start, loads, hold, effort=effort, found=found)
+    return _by_steps(model, start, loads, hold, options=options, found=found)
 
 
-def equilibrate_designs(tasks: Sequence[Task], effort: Effort = USUAL) -> list[Found]:
+def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[Found]:
     """The same of several designs of one structure, as many at once as their cases are one chunk."""
     several = min(_DESIGNS, max(1, _CHUNK // len(tasks[0].loads.inputs)))
     if several == 1:
-        return [equilibrate(*_parts(each), effort) for each in tasks]
+        return [equilibrate(*_parts(each), options) for each in tasks]
     chunks = [tasks[first : first + several] for first in range(0, len(tasks), several)]
-    found = [each for chunk in chunks for each in search_designs(chunk, effort)]
-    return [_by_steps(*_parts(task), effort=effort, found=each) for task, each in zip(tasks, found, strict=True)]
+    found = [each for chunk in chunks for each in search_designs(chunk, options)]
+    return [_by_steps(*_parts(task), options=options, found=each) for task, each in zip(tasks, found, strict=True)]
 
 
 def _split(cases: Array, most: int) -> list[Array]:
@@ -93,15 +93,15 @@ def join(parts: list[Found]) -> Found:
     return Found(pose, *(np.concatenate([getattr(part, name) for part in parts]) for name in TOLD))
 
 
-def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, effort: Effort, found: Found) -> Found:
+def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, options: SolverOptions, found: Found) -> Found:
     """What failed, loaded in steps: twice as long after each that is found, half as long after each that is not."""
     failed = np.flatnonzero(found.status != Status.CONVERGED)
     share, width, pose = np.zeros(len(failed)), np.full(len(failed), 0.5), start.of(failed)
     loads, hold = loads.of(failed), hold.of(failed)
-    while (active := np.flatnonzero((share < 1.0) & (width >= 0.5**effort.halvings))).size:
+    while (active := np.flatnonzero((share < 1.0) & (width >= 0.5**options.halvings))).size:
         aim = np.minimum(1.0, share[active] + width[active])
         target = replace(hold.of(active), value=aim[:, None] * hold.value[active])
-        again = search(model, pose.of(active), loads.of(active).times(aim), target, effort)
+        again = search(model, pose.of(active), loads.of(active).times(aim), target, options)
         good = again.status == Status.CONVERGED
         width[active] *= np.where(good, 2.0, 0.5)
         share[active[good]] = aim[good]
@@ -118,9 +118,9 @@ def merge(found: Found, cases: Array, other: Found) -> Found:
     return Found(found.pose.put(cases, other.pose), *(put(getattr(found, name), cases, getattr(other, name)) for name in TOLD))
 
 
-def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort) -> Found:
+def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options: SolverOptions) -> Found:
     """Iterate all cases together; those that are done leave. In C where there is a kernel that knows all of the stage's flexures."""
-    (found,) = search_designs((Task(model, start, loads, hold),), effort)
+    (found,) = search_designs((Task(model, start, loads, hold),), options)
     return found
 
 
@@ -156,12 +156,12 @@ class _Search:
     def active(self) -> Array:
         return np.flatnonzero(self.status == _GOES_ON)
 
-    def take(self, cases: Array, step: _Step, effort: Effort) -> None:
+    def take(self, cases: Array, step: _Step, options: SolverOptions) -> None:
         """What a step tells of the cases that made it."""
         self.iterations[cases] += 1
         self.residual[cases] = step.gap
         lost = ~np.isfinite(step.size)
-        done = (step.size < effort.step) & (step.gap < effort.gap)
+        done = (step.size < options.step) & (step.gap < options.gap)
         self.status[cases[done]], self.status[cases[lost]] = Status.CONVERGED, Status.SINGULAR
 
     def found(self, pose: Pose) -> Found:
@@ -178,24 +178,24 @@ class _Step:
     gap: Array
 
 
-def search_designs(tasks: Sequence[Task], effort: Effort) -> list[Found]:
+def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[Found]:
     """The same of several designs of one structure, each with its cases: what is not made of flexures is worked out together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
-        return [_search_compiled(task, effort) for task in tasks]
+        return [_search_compiled(task, options) for task in tasks]
     compiled = kernel() is not None and tables(first.model) is not None
     searches, poses = [_Search.of(task) for task in tasks], [task.start for task in tasks]
     with np.errstate(all="ignore"):
-        for _ in range(effort.iterations):
+        for _ in range(options.iterations):
             going = [place for place, each in enumerate(searches) if each.active.size]
             if not going:
                 break
             cases = [searches[place].active for place in going]
             here = [tasks[place].of(some, poses[place]) for place, some in zip(going, cases, strict=True)]
-            steps = _iterate_compiled(here, effort) if compiled else [_Step(*iterate(*_parts(each), effort)) for each in here]
+            steps = _iterate_compiled(here, options) if compiled else [_Step(*iterate(*_parts(each), options)) for each in here]
             for place, some, step in zip(going, cases, steps, strict=True):
                 poses[place] = poses[place].put(some, step.pose)
-                searches[place].take(some, step, effort)
+                searches[place].take(some, step, options)
     return [each.found(pose) for each, pose in zip(searches, poses, strict=True)]
 
 
@@ -203,14 +203,14 @@ def _parts(task: Task) -> tuple[Nonlinear, Pose, Loads, Hold]:
     return task.model, task.start, task.loads, task.hold
 
 
-def _search_compiled(task: Task, effort: Effort) -> Found:
-    found = iterate_compiled(task.model, task.start, task.loads, effort, None)
+def _search_compiled(task: Task, options: SolverOptions) -> Found:
+    found = iterate_compiled(task.model, task.start, task.loads, options, None)
     return Found(found.pose, found.status, found.count, found.lack, 1.0 * (found.status == Status.CONVERGED))
 
 
-def _iterate_compiled(tasks: list[Task], effort: Effort) -> list[_Step]:
+def _iterate_compiled(tasks: list[Task], options: SolverOptions) -> list[_Step]:
     """As `iterate`, flexures, loads and the solution in C."""
-    once = replace(effort, iterations=1)
+    once = replace(options, iterations=1)
     found = [iterate_compiled(each.model, each.start, each.loads, once, rest) for each, rest in zip(tasks, _rests(tasks), strict=True)]
     return [_Step(each.pose, each.moved, each.lack) for each in found]
 
@@ -249,14 +249,14 @@ def _together(tasks: list[Task], design: Array) -> Task:
     return Task(replace(model, hinges=replace(model.hinges, **tables)), pose, loads, held)
 
 
-def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effort) -> tuple[Pose, Array, Array]:
+def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, options: SolverOptions) -> tuple[Pose, Array, Array]:
     """One step: the pose after it, the step's size (b,) and how large the flexures' residuals were before it (b,)."""
     system = assemble(model, pose, loads, hold)
     step = system.solved(-system.residual)
     size = motion(model, step, model.size)
     many = not isinstance(system.matrix, np.ndarray)
     far = apart(model, system.bent, step) if many else motion(model, step, model.reach)
-    share = np.minimum(1.0, effort.limit / np.maximum(far, effort.limit))
+    share = np.minimum(1.0, options.limit / np.maximum(far, options.limit))
     after, inside = advance(model, pose, system.bent, step, share)
     return walked(model, after, loads) if many else after, np.maximum(size, inside), lack(model, system)
 

@@ -28,11 +28,13 @@ class Status(IntEnum):
 
 
 @dataclass(frozen=True)
-class Effort(CheckedFields):
-    """When a search ends: steps below `step` (lengths over the flexures', radians, amplitudes), gaps below `gap`; after `iterations`.
+class SolverOptions(CheckedFields):
+    """Solver options of equilibria.
+
+    A search ends at steps below `step` (lengths over the flexures', radians, amplitudes) and gaps below `gap`, or after `iterations`.
 
     `limit` is the largest step, translations over the stage's `reach`. What fails is loaded in steps, the least 2^-`halvings` of the load;
-    and what still fails follows its load by arc length, `arcs` steps at most, `past` limits too if that is asked for: the load may then
+    and what still fails follows its load by arc length, `arcs` steps at most, `past` limits too: the load may then
     fall and rise again to where it is whole, as a stage does that snaps through.
     """
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from rich.console import Console
 
-from flexstage.analysis.cautions import Caveats, caveats
+from flexstage.analysis.caveats import Caveats, caveats
 from flexstage.base.finding import Finding
 from flexstage.base.storage.document import Document, as_text
 from flexstage.base.text import printable
@@ -40,27 +40,27 @@ def answer(  # noqa: PLR0913 (all that a command can ask for)
     csv: Path | None = None,
     xlsx: Path | None = None,
     model: Model | None = None,
-    cautions: tuple[Finding, ...] = (),
+    warnings: tuple[Finding, ...] = (),
     beside: tuple[Path | None, ...] = (),
 ) -> None:
     """Write the JSON document, CSV files and workbook that are asked for, and show the tables unless stdout is one of them.
 
-    `kind` is that of the document, `mechanism` the description it is about (`None`: none, a record alone). `cautions` are the result's
+    `kind` is that of the document, `mechanism` the description it is about (`None`: none, a record alone). `warnings` are the result's
     own, told after those about the description. `beside` are the command's other outputs: where one of them goes to stdout, tables do not,
-    and cautions go to stderr.
+    and warnings go to stderr.
     """
     write_csv(csv, kind, body)
-    write_workbook(xlsx, body, lambda: envelope(kind, mechanism, model, {}, cautions))
+    write_workbook(xlsx, body, lambda: envelope(kind, mechanism, model, {}, warnings))
     if json is not None:
-        write(json, as_text(envelope(kind, mechanism, model, body(), cautions)) + "\n", "--json")
+        write(json, as_text(envelope(kind, mechanism, model, body(), warnings)) + "\n", "--json")
         if json == STDOUT:
             return
         announce(f"Wrote {json}")
     if STDOUT in map(str, (*beside, xlsx)):
-        for each in (*(() if mechanism is None else caveats(mechanism).cautions), *cautions):
+        for each in (*(() if mechanism is None else caveats(mechanism).warnings), *warnings):
             print_warning(str(each))
         return
-    show((*list_caveats(kind, mechanism, cautions), *tables()))
+    show((*list_caveats(kind, mechanism, warnings), *tables()))
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
@@ -84,9 +84,9 @@ def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable
 
 
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
-    """Cautions about a description (none: a record alone) and `more` about the result, and what this kind of result takes by default."""
+    """Warnings about a description (none: a record alone) and `more` about the result, and what this kind of result takes by default."""
     found = Caveats() if mechanism is None else caveats(mechanism)
-    for title, findings in (("Cautions", (*found.cautions, *more)), ("Taken by default", found.defaults_of(kind))):
+    for title, findings in (("Warnings", (*found.warnings, *more)), ("Taken by default", found.defaults_of(kind))):
         if findings:
             yield "\n".join([title, "", *(f"  {each}" for each in findings)])
 

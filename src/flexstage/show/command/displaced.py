@@ -20,12 +20,12 @@ from flexstage.show.command.options import temperature_option, text_option
 from flexstage.show.table import Table, matrix_table
 
 if TYPE_CHECKING:
-    from flexstage.analysis.loaded import stance as stances
-    from flexstage.analysis.loaded.stance import Stance
+    from flexstage.analysis.loaded import operating_point as operating_points
+    from flexstage.analysis.loaded.operating_point import OperatingPoint
     from flexstage.models.nonlinear import stage as displaced
     from flexstage.models.nonlinear.stage import Nonlinear
 else:  # few commands are asked about another place than the drawn one
-    stances, displaced = Late("flexstage.analysis.loaded.stance"), Late("flexstage.models.nonlinear.stage")
+    operating_points, displaced = Late("flexstage.analysis.loaded.operating_point"), Late("flexstage.models.nonlinear.stage")
 
 Load: TypeAlias = Annotated[
     list[str] | None,
@@ -94,46 +94,46 @@ def place(at: Sequence[str] | None, load: Sequence[str] | None, fixed: Sequence[
 
 @dataclass(frozen=True, eq=False)
 class Footing:
-    """How the stage of a command stands: brought somewhere (`stance`), or as drawn, its dead load with an `effect`; and its `model`.
+    """The stage of a command: at an `operating_point`, or as drawn, its dead load with an `effect`; and its `model`.
 
     `linear` is small motions about it, `links` the same link by link, for lost motion and drift.
     """
 
     mechanism: Mechanism
     model: Model
-    stance: Stance | None = None
+    operating_point: OperatingPoint | None = None
     effect: LoadEffect | None = None
 
     @property
     def linear(self) -> LinearModel:
         """Small motions about where the stage stands; as drawn by the model that is asked for, under its dead load where that is felt."""
-        return elastic_model(self.mechanism, self.model, loaded=True) if self.stance is None else self.stance.linear
+        return elastic_model(self.mechanism, self.model, loaded=True) if self.operating_point is None else self.operating_point.linear
 
     @property
     def links(self) -> LinearModel:
         """The same link by link."""
-        if self.stance is not None:
-            return self.stance.links
+        if self.operating_point is not None:
+            return self.operating_point.links
         loaded = None if self.effect is None else self.effect.links
         return elastic_model(self.mechanism, self.model) if loaded is None else loaded
 
     def body(self, result: Any) -> Any:
         """A result, and beside it how the stage stands: brought somewhere, or what its dead load changes."""
-        if self.stance is not None:
-            return SideBySide((result, {"stance": self.stance}))
+        if self.operating_point is not None:
+            return SideBySide((result, {"operating_point": self.operating_point}))
         return result if self.effect is None else SideBySide((result, {"loaded": self.effect}))
 
     def tables(self) -> Iterator[Table | str]:
         """Where the stage stands, before what is told about it."""
         if self.effect is not None and self.effect.model is not None:
             yield self.effect.text
-        if self.stance is not None:
-            yield from _stance_tables(self.stance)
+        if self.operating_point is not None:
+            yield from _operating_point_tables(self.operating_point)
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is doubtful where the stage stands."""
-        return () if self.stance is None else self.stance.cautions
+        return () if self.operating_point is None else self.operating_point.warnings
 
 
 def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> Footing:
@@ -143,11 +143,13 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
     if model is not Model.LUMPED:
         raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
-    there = stances.stance(mechanism, asked.brought(known), loads=loads_of(known, asked.load), fixed=asked.locked, temperature=asked.warmth)
+    there = operating_points.operating_point(
+        mechanism, asked.brought(known), loads=loads_of(known, asked.load), fixed=asked.locked, temperature=asked.warmth
+    )
     return Footing(mechanism, model, there)
 
 
-def _stance_tables(found: Stance) -> Iterator[Table]:
+def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
     yield matrix_table("Sag under weight, loads and heat, from as drawn", found.sag)
     if found.moved is not None:
         yield matrix_table("From there it is brought by", found.moved)

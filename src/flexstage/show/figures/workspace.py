@@ -91,8 +91,8 @@ def _panel(axes: Any, workspace: Workspace, across: str, up: str) -> None:
 
 def _strokes(workspace: Workspace, shown: _Shown) -> Array:
     """Both ends of the single-axis stroke of a coordinate."""
-    index = workspace.single.coordinates.index(shown.name)
-    return shown.unit.factor * np.array([first_design(each, 1)[index] for each in (workspace.single.low, workspace.single.high)])
+    index = workspace.single_axis.coordinates.index(shown.name)
+    return shown.unit.factor * np.array([first_design(each, 1)[index] for each in (workspace.single_axis.low, workspace.single_axis.high)])
 
 
 def _command(axes: Any, command: Mapping[str, Number], x: _Shown, y: _Shown) -> None:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from flexstage.analysis.cautions import caveats
+from flexstage.analysis.caveats import caveats
 from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.page import Section, section
-from flexstage.show.tables.caveats import caution_table, default_table
+from flexstage.show.tables.caveats import default_table, warning_table
 
 
 def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Section | None:
-    """Cautions about the description and `more` about the result, and what was taken by default; `None` where there is neither.
+    """Warnings about the description and `more` about the result, and what was taken by default; `None` where there is neither.
 
     >>> caveat_section(Mechanism("stage")) is None
     True
     """
     found = caveats(mechanism)
-    cautions = (*found.cautions, *more)
-    return section("Cautions" if cautions else "Taken by default", [caution_table(cautions), default_table(found.defaults)])
+    warnings = (*found.warnings, *more)
+    return section("Warnings" if warnings else "Taken by default", [warning_table(warnings), default_table(found.defaults)])

@@ -125,14 +125,14 @@ def _zero_if_noise(share: float) -> float:
 def _reach_facts(analysis: Analysis) -> Iterator[Fact]:
     if analysis.workspace is None:
         return
-    single = analysis.workspace.corrected or analysis.workspace.single
+    single = analysis.workspace.corrected or analysis.workspace.single_axis
     if single.coordinates:
         name = single.coordinates[0]
         value = float(first_design(single.symmetric, 1)[0])
         yield Fact(f"Stroke along {name}", f"±{format_value(value, 'rad' if name.startswith('r') else 'm', 4)}", "one axis at a time")
     stress = analysis.workspace.stress
     if stress is not None and stress.links:
-        least = float(first_design(np.atleast_1d(stress.least), 1)[0])
+        least = float(first_design(np.atleast_1d(stress.min_safety), 1)[0])
         yield Fact("Least safety factor", number(least, 3), f"against yield, in {stress.weakest}")
 
 
@@ -141,8 +141,8 @@ def _sentences(analysis: Analysis) -> Iterator[str]:
         yield _mode_sentence(analysis)
     if analysis.lost_motion is not None:
         yield _loss_sentence(analysis)
-    if analysis.workspace is not None and analysis.workspace.corner is not None:
-        scale = float(first_design(np.atleast_1d(analysis.workspace.corner.scale), 1)[0])
+    if analysis.workspace is not None and analysis.workspace.worst_case is not None:
+        scale = float(first_design(np.atleast_1d(analysis.workspace.worst_case.scale), 1)[0])
         reached = "can be reached at once" if scale >= 1.0 else f"cannot all be reached at once: at most {percent(scale, 3)} of the box can"
         yield f"The commanded strokes {reached}."
 

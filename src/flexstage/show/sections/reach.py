@@ -8,7 +8,7 @@ from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.page import Block, Folded, Picture, Prose, Section, fold, section
 from flexstage.show.table import row_table
-from flexstage.show.tables.reach import reach_tables
+from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.strength import buckling_table, load_table, platform_line_table, stress_table
 from flexstage.show.tables.workspace import (
     clearance_table,
@@ -31,7 +31,9 @@ def workspace_section(analysis: Analysis) -> Section | None:
     """
     reach = analysis.workspace
     if reach is None:
-        return None if analysis.reach is None else section("Reach", list(reach_tables(analysis.reach)))
+        return (
+            None if analysis.force_workspace is None else section("Force workspace", list(force_workspace_tables(analysis.force_workspace)))
+        )
     figure = workspace_figure(reach)
     caption = "Reachable poses, projected on pairs of coordinates."
     picture = None if figure is None else Picture(to_svg(figure, "reach", caption), caption)
@@ -40,7 +42,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
         [
             stroke_table(reach),
             picture,
-            None if reach.corner is None else corner_table(reach.corner),
+            None if reach.worst_case is None else corner_table(reach.worst_case),
             None if reach.gauges is None else gauge_range_table(reach.gauges),
             None if reach.resolution is None else resolution_table(reach.resolution),
             fold(

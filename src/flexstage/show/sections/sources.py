@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexstage.analysis.cautions import part_cautions
+from flexstage.analysis.caveats import part_warnings
 from flexstage.analysis.complete import Analysis, Model
 from flexstage.beams.validity import validity
 from flexstage.mechanism.mechanism import Mechanism, StructuralDamping
@@ -68,7 +68,7 @@ def limit_section(analysis: Analysis) -> Section | None:
     'Limits'
     """
     blocks: list[Block | None] = [Prose(_LIMITS[analysis.model])]
-    if not part_cautions(analysis.mechanism):
+    if not part_warnings(analysis.mechanism):
         blocks.append(Prose("No part lies outside the range that beam theory was compared with."))
     blocks.append(_missing_table(analysis))
     accuracy = error_of_theory_table(analysis.mechanism) if analysis.model is not Model.IDEAL else None

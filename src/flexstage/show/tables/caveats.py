@@ -1,4 +1,4 @@
-"""Tables of caveats: cautions, and what was taken by default."""
+"""Tables of caveats: warnings, and what was taken by default."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from flexstage.base.finding import Finding
 from flexstage.show.table import Cell, Mark, Table, make_table
 
 
-def caution_table(found: Sequence[Finding]) -> Table | None:
+def warning_table(found: Sequence[Finding]) -> Table | None:
     """What is doubtful, and what to do; `None` where nothing is.
 
-    >>> caution_table([Finding("B4/pivot", "it is thin", "Thicken it")]).texts()
+    >>> warning_table([Finding("B4/pivot", "it is thin", "Thicken it")]).texts()
     [['where', 'what', 'what to do'], ['B4/pivot', 'it is thin', 'Thicken it']]
     """
-    return _table("Cautions", "what to do", Mark.WARN, found)
+    return _table("Warnings", "what to do", Mark.WARN, found)
 
 
 def default_table(found: Sequence[Finding]) -> Table | None:

@@ -64,7 +64,7 @@ def composition_table(mechanism: Mechanism) -> Table:
 def kind_name(part: Part) -> str:
     """What a part is called.
 
-    >>> from flexstage.parts.given import Joint
+    >>> from flexstage.parts.compliance_matrix import Joint
     >>> kind_name(Joint())
     'joint'
     """

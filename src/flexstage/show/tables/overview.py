@@ -116,7 +116,7 @@ def _axis_note(analysis: Analysis) -> str:
     said = {
         "Strokes: one axis at a time, lost motion made up by command": analysis.workspace is not None and analysis.lost_motion is not None,
         "Strokes: one axis at a time": analysis.workspace is not None and analysis.lost_motion is None,
-        "Strokes: elastic motion, held for ever": analysis.reach is not None,
+        "Strokes: elastic motion, held for ever": analysis.force_workspace is not None,
         "Stiffness: against a load along that axis, strokes held, the others giving way": analysis.statics is not None,
         "Resolution: all gauges a step off, signs at their worst": bool(_resolution(analysis)),
     }
@@ -126,10 +126,14 @@ def _axis_note(analysis: Analysis) -> str:
 def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     """Stroke both ways and what ends it, by coordinate."""
     if analysis.workspace is not None:
-        single = analysis.workspace.corrected or analysis.workspace.single
-        names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single.limiting
-    elif analysis.reach is not None:
-        names, values, causes = analysis.reach.coordinates, first_design(analysis.reach.held, 1), analysis.reach.limited_by
+        single = analysis.workspace.corrected or analysis.workspace.single_axis
+        names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single_axis.limiting
+    elif analysis.force_workspace is not None:
+        names, values, causes = (
+            analysis.force_workspace.coordinates,
+            first_design(analysis.force_workspace.held, 1),
+            analysis.force_workspace.limited_by,
+        )
     else:
         return {}
     return {
@@ -224,9 +228,9 @@ def _strength_text(analysis: Analysis) -> str | None:
     buckling = analysis.buckling if reach is None else reach.buckling
     said: list[str] = []
     if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {_first(reach.stress.least, 4)} against yield, in {reach.stress.weakest}")
+        said.append(f"least safety factor {_first(reach.stress.min_safety, 4)} against yield, in {reach.stress.weakest}")
     if buckling is not None:
-        said.append(f"load factor of buckling {_first(buckling.least, 4)}")
+        said.append(f"load factor of buckling {_first(buckling.min_factor, 4)}")
     return f"Strength: {', '.join(said)}." if said else None
 
 
@@ -243,7 +247,7 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
     Verdict: All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.
       Look at frequency.platform.1, 106.01 Hz (at least 100 Hz, +6.01 %): mode 1, tilt.
     """
-    doubts = () if analysis.ends is None else analysis.ends.cautions
+    doubts = () if analysis.ends is None else analysis.ends.warnings
     more = "".join(f"\n  Beware: {each}" for each in doubts) + (
         "" if whole else "\n  All tables: --full. With pictures, in one page: --report FILE."
     )

@@ -49,7 +49,7 @@ def stroke_table(workspace: Workspace) -> Table:
     >>> stroke_table(workspace(double_triangle(), ideal(double_triangle()), None)).texts()[3]
     ['z', 'um', '-300', '300', '300', '-', 'B4']
     """
-    single, corrected = workspace.single, workspace.corrected
+    single, corrected = workspace.single_axis, workspace.corrected
     low, high, both = (first_design(values, 1) for values in (single.low, single.high, single.symmetric))
     rows: list[tuple[Cell | str, ...]] = []
     for index, name in enumerate(single.coordinates):

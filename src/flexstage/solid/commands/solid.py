@@ -99,13 +99,13 @@ class _Request:
 
 @dataclass(frozen=True)
 class _Result:
-    """Results of the solid model in one document, their tables; headline, sections and motions of a report; cautions about them."""
+    """Results of the solid model in one document, their tables; headline, sections and motions of a report; warnings about them."""
 
     said: Headline
     results: tuple[Any, ...]
     tables: Callable[[], Iterator[Table | None]]
     sections: Callable[[], Iterator[Section | None]]
-    cautions: tuple[Finding, ...]
+    warnings: tuple[Finding, ...]
     motions: Callable[[], tuple[Motion, ...]] = tuple
 
 
@@ -137,7 +137,7 @@ def solid(  # noqa: PLR0913 (its options)
     with progress_bar() as shown, Pool() as pool:
         found = _STUDIES[scope](mechanism, replace(asked, pool=pool), shown)
     if report is not None:
-        save(report, reports.solid_report(mechanism, found.said, found.sections(), found.cautions, found.motions()), "--report")
+        save(report, reports.solid_report(mechanism, found.said, found.sections(), found.warnings, found.motions()), "--report")
     answer(
         "solid",
         mechanism,
@@ -146,7 +146,7 @@ def solid(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=(*free_end_cautions(mechanism), *found.cautions),
+        warnings=(*free_end_warnings(mechanism), *found.warnings),
         beside=(report,),
     )
 
@@ -175,18 +175,18 @@ def verify(  # noqa: PLR0913 (its options)
         require_standing(mechanism)
         with progress_bar() as shown, Pool() as pool:
             found = _verify(mechanism, replace(asked, pool=pool), shown)
-        cautions = _verification_cautions(found, asked)
-        _retain(found, cautions, asked)
+        warnings = _verification_warnings(found, asked)
+        _retain(found, warnings, asked)
     else:
         print_note("\n".join(("to do: nothing, the verification is in the cache.", *known.notes)))
-        found, cautions = known.of(mechanism), known.cautions
+        found, warnings = known.of(mechanism), known.warnings
     if report is not None:
         units = None if found.units is None else pages.unit_section(found.units)
         stage = None if found.stage is None else pages.stage_solid_section(found.stage)
         pairs, beside = ({}, None) if found.stage is None else pages.paired_with_theory(mechanism, found.stage.result)
         more = () if found.stage is None else pages.solid_motions(mechanism, found.stage.result, pairs)
         sections = iter([pages.verification_section(found), beside, pages.hinge_section(found.hinges), units, stage])
-        save(report, reports.solid_report(mechanism, pages.verification_headline(found), sections, cautions, more), "--report")
+        save(report, reports.solid_report(mechanism, pages.verification_headline(found), sections, warnings, more), "--report")
     print_missing(found.reasons)
     answer(
         "verify",
@@ -196,16 +196,16 @@ def verify(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=cautions,
+        warnings=warnings,
         beside=(report,),
     )
 
 
-def _verification_cautions(found: verification.Verification, asked: _Request) -> tuple[Finding, ...]:
+def _verification_warnings(found: verification.Verification, asked: _Request) -> tuple[Finding, ...]:
     return (
-        *free_end_cautions(found.mechanism),
+        *free_end_warnings(found.mechanism),
         *_inexact_hinges(found.hinges),
-        *(caution for name, each in _solids_of(found) for caution in _accuracy_cautions(name, each, asked.resolution)),
+        *(warning for name, each in _solids_of(found) for warning in _accuracy_warnings(name, each, asked.resolution)),
     )
 
 
@@ -213,12 +213,12 @@ def _solids_of(found: verification.Verification) -> list[tuple[str, Converged[An
     return [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
 
 
-def _retain(found: verification.Verification, cautions: tuple[Finding, ...], asked: _Request) -> None:
+def _retain(found: verification.Verification, warnings: tuple[Finding, ...], asked: _Request) -> None:
     """Keep what a verification tells, where the description and what was asked alone decide on it, not the memory that there was."""
     failed = found.units is None and _drives_units(found.mechanism)
     notes = tuple(f"{name}: {_accuracy_text(each)}" for name, each in _solids_of(found) if each.error <= asked.resolution.accuracy)
     if asked.memory is None and not failed and not any(each.stopped for _, each in _solids_of(found)):
-        retain(Known(found.rows, dict(found.reasons), cautions, notes), found.mechanism, asked.resolution, Cache())
+        retain(Known(found.rows, dict(found.reasons), warnings, notes), found.mechanism, asked.resolution, Cache())
 
 
 def _drives_units(mechanism: Mechanism) -> bool:
@@ -270,8 +270,8 @@ def calibrate(
     with progress_bar() as shown:
         found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
     save(output, found.text, "--output")
-    cautions, tables = _inexact_hinges(found.hinges), [calibration_table(found)]
-    answer("calibrate", mechanism, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, cautions=cautions, beside=(output,))
+    warnings, tables = _inexact_hinges(found.hinges), [calibration_table(found)]
+    answer("calibrate", mechanism, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, warnings=warnings, beside=(output,))
 
 
 def _request(accuracy: str, order: int | None, memory: str | None) -> _Request:
@@ -319,13 +319,13 @@ def _hinges(asked: _Request, shown: ProgressBar) -> Hinges:
 
 def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
     found = solid_hinges(mechanism, _hinges(asked, shown))
-    cautions = _inexact_hinges(found)
+    warnings = _inexact_hinges(found)
     return _Result(
-        said=page.Headline(f"{len(found)} distinct hinges, {len(cautions) or 'none'} of them less exact than was asked.", not cautions),
+        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them less exact than was asked.", not warnings),
         results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([pages.hinge_section(found)]),
-        cautions=cautions,
+        warnings=warnings,
     )
 
 
@@ -347,7 +347,7 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
         results=(found, {"units": found.result}),
         tables=tables,
         sections=lambda: iter([pages.unit_section(found)]),
-        cautions=_accuracy_cautions("units", found, asked.resolution),
+        warnings=_accuracy_warnings("units", found, asked.resolution),
     )
 
 
@@ -374,7 +374,7 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         results=(found, stage),
         tables=tables,
         sections=lambda: iter([pages.stage_solid_section(found), paired()[1]]),
-        cautions=_accuracy_cautions("stage", found, asked.resolution),
+        warnings=_accuracy_warnings("stage", found, asked.resolution),
         motions=lambda: pages.solid_motions(mechanism, stage, paired()[0]),
     )
 
@@ -382,10 +382,10 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
 _STUDIES = {Scope.HINGE: _hinge_study, Scope.UNIT: _unit_study, Scope.STAGE: _stage_study}
 
 
-def free_end_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
+def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Leaves whose ends theory lets warp, while their solids are clamped whole.
 
-    >>> free_end_cautions(Mechanism("stage"))
+    >>> free_end_warnings(Mechanism("stage"))
     ()
     """
     found: dict[str, Finding] = {}
@@ -400,13 +400,13 @@ def free_end_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def _inexact_hinges(hinges: Mapping[str, SolidHinge]) -> tuple[Finding, ...]:
-    """Cautions about hinges whose 6x6 is not as exact as was asked."""
+    """Warnings about hinges whose 6x6 is not as exact as was asked."""
     found = ((name, hinge.found.finding) for name, hinge in hinges.items())
     return tuple(Finding(name, each.what, each.advice) for name, each in found if each is not None)
 
 
-def _accuracy_cautions(what: str, found: Converged[Any], asked: Resolution) -> tuple[Finding, ...]:
-    """A caution where the error estimated is not as small as was asked; where it is, it is told."""
+def _accuracy_warnings(what: str, found: Converged[Any], asked: Resolution) -> tuple[Finding, ...]:
+    """A warning where the error estimated is not as small as was asked; where it is, it is told."""
     text = _accuracy_text(found)
     if found.error <= asked.accuracy:
         print_note(f"{what}: {text}")

@@ -21,8 +21,8 @@ from flexstage.mechanism.drawn import calibrated_parts
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.stand_in import KEPT, StandIn, write_stand_ins
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Origin
 from flexstage.parts.compound import Compound
-from flexstage.parts.given import Given, Origin
 from flexstage.solid.fea.geometry.piece import is_mirrored, medium
 from flexstage.solid.fea.hinges.hinge_form import LEAVE, NO_ESTIMATE
 from flexstage.solid.results.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
@@ -38,7 +38,7 @@ class Calibration(InNotebook):
     """The hinges that were computed, the `parts` that stand in for them, and the design file's `text` with these parts."""
 
     hinges: Mapping[str, SolidHinge]
-    parts: Mapping[str, Given]
+    parts: Mapping[str, ComplianceMatrix]
     text: Annotated[str, INNER]
 
     @property
@@ -67,7 +67,7 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     return Calibration(found, parts, write_stand_ins(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
 
 
-def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
+def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
     """The computed hinges as compliance matrices, of the mass and with the intended freedoms of the drawn ones.
 
     The 6x6 is given the symmetry of the drawn hinge; a freedom whose compliance FEA cannot tell from that of the blocks beside the hinge
@@ -76,14 +76,14 @@ def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
     >>> stand_ins({})
     {}
     """
-    parts: dict[str, Given] = {}
+    parts: dict[str, ComplianceMatrix] = {}
     findings: list[Finding] = []
     for name, hinge in found.items():
         matrix = _symmetrise(hinge)
         if hinge.error is None or hinge.error > _LARGEST_ERROR:
             findings.append(_doubt(name, hinge.error))
             continue
-        parts[name] = Given(
+        parts[name] = ComplianceMatrix(
             compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in matrix),
             free=hinge.form.part.intended,
             mass=_mass(hinge),

@@ -1,4 +1,4 @@
-"""Verifications that are known: rows and cautions in the user's cache, as long as neither the description nor the program changes."""
+"""Verifications that are known: rows and warnings in the user's cache, as long as neither the description nor the program changes."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ MOST = 200
 
 @dataclass(frozen=True)
 class Known:
-    """What a verification tells without the solids behind it: its rows, why a group is not there, its own cautions and notes."""
+    """What a verification tells without the solids behind it: its rows, why a group is not there, its own warnings and notes."""
 
     rows: tuple[Row, ...]
     reasons: Mapping[str, str]
-    cautions: tuple[Finding, ...]
+    warnings: tuple[Finding, ...]
     notes: tuple[str, ...] = ()
 
     def of(self, mechanism: Mechanism) -> Verification:
@@ -55,7 +55,7 @@ def recall(mechanism: Mechanism, asked: Resolution, cache: Cache) -> Known | Non
             return None
         told: dict[str, Any] = json.loads(text)
         rows = tuple(_row(each) for each in told["rows"])
-        return Known(rows, told["reasons"], tuple(Finding(**each) for each in told["cautions"]), tuple(told["notes"]))
+        return Known(rows, told["reasons"], tuple(Finding(**each) for each in told["warnings"]), tuple(told["notes"]))
     except (OSError, ValueError, KeyError, TypeError):  # not there, or damaged: it is worked out again
         return None
 

@@ -20,12 +20,12 @@ def solid_report(
     mechanism: Mechanism,
     said: Headline,
     sections: Iterable[Section | None],
-    cautions: tuple[Finding, ...] = (),
+    warnings: tuple[Finding, ...] = (),
     more: tuple[Motion, ...] = (),
 ) -> str:
-    """Sections of the solid model as a page of HTML: what is said of them, the stage, the first section, cautions, the others.
+    """Sections of the solid model as a page of HTML: what is said of them, the stage, the first section, warnings, the others.
 
-    `cautions` are those about the result; those about the description stand with them. Sections that are absent are left out. `more` are
+    `warnings` are those about the result; those about the description stand with them. Sections that are absent are left out. `more` are
     motions of the viewer beside those of theory.
 
     >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
@@ -41,5 +41,5 @@ def solid_report(
     first, *rest = sections
     data = stage_data(mechanism)
     data = replace(data, motions=(*data.motions, *more))
-    shown = (turning_section(mechanism, data), first, caveat_section(mechanism, cautions), *rest)
+    shown = (turning_section(mechanism, data), first, caveat_section(mechanism, warnings), *rest)
     return page(head, [each for each in shown if each is not None], {"stage": data})

@@ -13,7 +13,7 @@ from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note
 from flexstage.studies.optimisation.cost import search_cost
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.result import Front, Optimum
 from flexstage.studies.optimisation.search.front import pareto_front
 from flexstage.studies.optimisation.search.optimum import optimise as run_optimise
@@ -43,24 +43,24 @@ def optimise(
     """
     require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], study)
     asked = load_study(study)
-    wanted = load_wanted(asked, str(study))
+    definition = load_optimisation(asked, str(study))
     source = design_path(asked, study.parent)
     if source is not None and output is not None and source.resolve() == output.resolve():
         raise refuse("--output", f"{output} is the design that the study starts from", "Choose another file")
-    if len(wanted.objectives) > 1 and output is not None:
+    if len(definition.objectives) > 1 and output is not None:
         raise refuse("--output", "a front has many designs", "Set a limit on one objective, optimise the other, and write that design")
-    run = run_optimise if len(wanted.objectives) == 1 else pareto_front
-    print_note(str(search_cost(setting(asked, wanted))))
+    run = run_optimise if len(definition.objectives) == 1 else pareto_front
+    print_note(str(search_cost(setting(asked, definition))))
     with progress_bar() as shown:
-        found = run(asked, wanted, lambda text: shown.share(text, 0.0))
+        found = run(asked, definition, lambda text: shown.share(text, 0.0))
     _require_solution(found)
     if isinstance(found, Optimum) and found.final is not None:
         values = values_of(asked, found.final.shares)
-        cautions = require_stable(asked, values)
+        warnings = require_stable(asked, values)
         if output is not None:
-            save(output, write_optimum(design_text(asked, study.parent), asked, wanted, values, where=str(source or study)), "--output")
+            save(output, write_optimum(design_text(asked, study.parent), asked, definition, values, where=str(source or study)), "--output")
     else:
-        cautions = loaded_findings(asked)
+        warnings = loaded_findings(asked)
     if report is not None:
         save(report, optimise_report(found) if isinstance(found, Optimum) else front_report(found), "--report")
     answer(
@@ -72,7 +72,7 @@ def optimise(
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=cautions,
+        warnings=warnings,
         beside=(output, report),
     )
 

@@ -64,7 +64,7 @@ def sweep(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=loaded_findings(asked),
+        warnings=loaded_findings(asked),
         beside=(report,),
     )
 

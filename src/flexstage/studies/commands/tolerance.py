@@ -61,6 +61,6 @@ def tolerance(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=loaded_findings(found.study),
+        warnings=loaded_findings(found.study),
         beside=(report,),
     )

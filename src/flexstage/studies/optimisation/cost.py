@@ -44,8 +44,8 @@ def search_cost(set_up: Setting) -> SearchCost:
     >>> search_cost(setting(*leaf_study())).searches
     2
     """
-    wanted = set_up.wanted
-    searches = wanted.starts if len(wanted.objectives) == 1 else 2 * (wanted.starts + 1) + 2 * (wanted.points - 2)
+    definition = set_up.definition
+    searches = definition.starts if len(definition.objectives) == 1 else 2 * (definition.starts + 1) + 2 * (definition.points - 2)
     begun = time.perf_counter()
     set_up.values(set_up.before.shares[None])
     return SearchCost(searches, time.perf_counter() - begun)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexstage.studies.optimisation.wanted import Aim, Objective, Wanted
+from flexstage.studies.optimisation.problem import Aim, Objective, OptimisationProblem
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.file import loads_study
 
@@ -16,11 +16,11 @@ optimise = { maximise = "f1", starts = 2 }
 """
 
 
-def leaf_study() -> tuple[Study, Wanted]:
+def leaf_study() -> tuple[Study, OptimisationProblem]:
     """The parallelogram with leaves as thick as its stroke allows.
 
     >>> leaf_study()[1].objectives[0].name
     'f1'
     """
     study = loads_study(_TEXT)
-    return study, Wanted((Objective("f1", study.responses["f1"], Aim.MAXIMISE),), starts=2)
+    return study, OptimisationProblem((Objective("f1", study.responses["f1"], Aim.MAXIMISE),), starts=2)

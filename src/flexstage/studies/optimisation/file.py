@@ -6,25 +6,25 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.mechanism.store.lines import with_lines
 from flexstage.studies.form import OptimiseTable, study_file
-from flexstage.studies.optimisation.wanted import Aim, Objective, Wanted
+from flexstage.studies.optimisation.problem import Aim, Objective, OptimisationProblem
 from flexstage.studies.sweeps.definition import Study
 
 _MOST = 2
 
 
 @check_arguments
-def load_wanted(study: Study, where: str = "text") -> Wanted:
-    """Read what is wanted from the study's own text. Raises `DesignError` with every finding, each at `where`.
+def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
+    """Read the optimisation problem from the study's own text. Raises `DesignError` with every finding, each at `where`.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
-    >>> load_wanted(leaf_study()[0]).starts
+    >>> load_optimisation(leaf_study()[0]).starts
     2
     """
     table = study_file(study.text, where).optimise
     findings: list[Finding] = []
-    wanted = Wanted(_objectives(table, study, findings), table.starts, table.seed, table.pareto_points, table.requirements)
+    definition = OptimisationProblem(_objectives(table, study, findings), table.starts, table.seed, table.pareto_points, table.requirements)
     require(with_lines(findings, study.text, where))
-    return wanted
+    return definition
 
 
 def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> tuple[Objective, ...]:

@@ -12,8 +12,8 @@ from flexstage.analysis.assessment.requirements import Requirement, Verdict
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
+from flexstage.studies.optimisation.problem import Objective, OptimisationProblem
 from flexstage.studies.optimisation.values import Point, values_of
-from flexstage.studies.optimisation.wanted import Objective, Wanted
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.variable import Variable
 
@@ -127,7 +127,7 @@ class Outcome(InNotebook):
     """
 
     study: Annotated[Study, INNER]
-    wanted: Annotated[Wanted, INNER]
+    definition: Annotated[OptimisationProblem, INNER]
     limits: Annotated[tuple[Requirement, ...], INNER]
     before: Annotated[Point, INNER]
     contradictions: Annotated[tuple[Contradiction, ...], INNER]
@@ -144,7 +144,7 @@ class Outcome(InNotebook):
     @property
     def objectives(self) -> Annotated[tuple[Objective, ...], VIEW]:
         """What is to be best."""
-        return self.wanted.objectives
+        return self.definition.objectives
 
     @property
     def variables(self) -> Annotated[tuple[Variable, ...], VIEW]:
@@ -154,7 +154,7 @@ class Outcome(InNotebook):
     @property
     def seed(self) -> Annotated[int, VIEW]:
         """The seed of its starts."""
-        return self.wanted.seed
+        return self.definition.seed
 
     @property
     def initial(self) -> Annotated[DesignPoint, VIEW, Called("before")]:
@@ -163,10 +163,10 @@ class Outcome(InNotebook):
 
     def design(self, point: Point) -> DesignPoint:
         """A design with its names, in SI."""
-        first = len(self.wanted.objectives)
+        first = len(self.definition.objectives)
         return DesignPoint(
             dict(zip((each.name for each in self.study.variables), values_of(self.study, point.shares).tolist(), strict=True)),
-            {each.name: float(point.values[number]) for number, each in enumerate(self.wanted.objectives)},
+            {each.name: float(point.values[number]) for number, each in enumerate(self.definition.objectives)},
             tuple(_limit_at(each, float(value)) for each, value in zip(self.limits, point.values[first:], strict=True)),
         )
 

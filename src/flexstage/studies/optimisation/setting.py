@@ -15,9 +15,9 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.mechanism.addresses.address import get
 from flexstage.mechanism.checks import require_valid
+from flexstage.studies.optimisation.problem import Objective, OptimisationProblem, limits
 from flexstage.studies.optimisation.search.problem import SPARE, Problem, Side
 from flexstage.studies.optimisation.values import Point, Values
-from flexstage.studies.optimisation.wanted import Objective, Wanted, limits
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.variable import Variable
 
@@ -29,7 +29,7 @@ class Setting:
     """What a search needs: `values` evaluates objectives first, then what the `kept` limits are on; `before` is the design as it stands."""
 
     study: Study
-    wanted: Wanted
+    definition: OptimisationProblem
     kept: tuple[Requirement, ...]
     values: Values
     before: Point
@@ -41,7 +41,7 @@ class Setting:
 
     def objective(self, number: int) -> Side:
         """An objective as a side: c is its value over its scale, negative where it is maximised."""
-        return Side(number, self.wanted.objectives[number].direction.sense, 0.0, self.scale(number))
+        return Side(number, self.definition.objectives[number].direction.sense, 0.0, self.scale(number))
 
     def scale(self, number: int) -> float:
         """What an objective is measured by: its value in the design as it stands."""
@@ -50,15 +50,15 @@ class Setting:
     def side(self, number: int) -> Side:
         """A limit as a side, with a little to spare."""
         limit = self.kept[number]
-        index = len(self.wanted.objectives) + number
+        index = len(self.definition.objectives) + number
         scale = abs(limit.limit) or abs(float(self.before.values[index])) or 1.0
         spare = SPARE * scale
         return Side(index, limit.sense, limit.limit + (spare if limit.sense is Sense.AT_LEAST else -spare), scale)
 
     def starts(self) -> Array:
         """Shares (starts, n): the design as it stands, then a scrambled Sobol sequence."""
-        count, size = self.wanted.starts - 1, len(self.study.variables)
-        generator = scipy.stats.qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.wanted.seed))
+        count, size = self.definition.starts - 1, len(self.study.variables)
+        generator = scipy.stats.qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.definition.seed))
         drawn = generator.random(1 << max(count - 1, 0).bit_length())[:count]
         return np.concatenate([self.before.shares[None], drawn])
 
@@ -69,7 +69,7 @@ class Setting:
         return tuple(each.name for each, most in zip(self.study.variables, largest, strict=True) if most <= 1e-14)
 
 
-def setting(study: Study, wanted: Wanted) -> Setting:
+def setting(study: Study, definition: OptimisationProblem) -> Setting:
     """Set up an optimisation; the design as it stands is evaluated.
 
     Raises `DesignError` for measures that the stage does not have, designs that stand outside their ranges, and one that cannot be read.
@@ -79,9 +79,9 @@ def setting(study: Study, wanted: Wanted) -> Setting:
     >>> found.before.shares.round(3).tolist(), round(found.before.values[0])
     ([0.286], 875)
     """
-    kept = limits(study, wanted)
-    measures = (*(each.measure for each in wanted.objectives), *kept)
-    require(_measure_findings(study, wanted.objectives, kept))
+    kept = limits(study, definition)
+    measures = (*(each.measure for each in definition.objectives), *kept)
+    require(_measure_findings(study, definition.objectives, kept))
     require(_range_findings(study))
     values = Values(study, tuple(measures))
     shares = np.array([share_of(each, nominal_value(study, each)) for each in study.variables])
@@ -89,7 +89,7 @@ def setting(study: Study, wanted: Wanted) -> Setting:
     if isinstance(before, str):
         require([Finding("design", before, "Mend it before it is optimised")])
     assert isinstance(before, Point)  # noqa: S101  refused just above
-    return Setting(study, wanted, kept, values, before)
+    return Setting(study, definition, kept, values, before)
 
 
 def _measure_findings(study: Study, objectives: tuple[Objective, ...], kept: tuple[Requirement, ...]) -> Iterator[Finding]:

@@ -14,7 +14,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, patch
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.retag import set_tags
-from flexstage.studies.optimisation.wanted import Wanted
+from flexstage.studies.optimisation.problem import OptimisationProblem
 from flexstage.studies.sweeps.definition import Study
 
 _DIGITS = 12
@@ -43,7 +43,7 @@ def design_text(study: Study, folder: Path) -> str:
     return read_text(path) if path is not None else dumps(study.design, {"": f'The stage that the study "{study.name}" starts from.'})
 
 
-def write_optimum(text: str, study: Study, wanted: Wanted, values: Array | Sequence[float], *, where: str = "text") -> str:
+def write_optimum(text: str, study: Study, definition: OptimisationProblem, values: Array | Sequence[float], *, where: str = "text") -> str:
     """The text of the design file with `values` (d,) of the study's variables, each tagged `derived optimise STUDY, OBJECTIVE`.
 
     Raises `DesignError` where the file's layout does not allow it.
@@ -56,7 +56,7 @@ def write_optimum(text: str, study: Study, wanted: Wanted, values: Array | Seque
     (0.00123, 'derived optimise thicker leaves, maximise f1')
     """
     changed = dict(_changes(study, np.asarray(values, dtype=float)))
-    aims = ", ".join(f"{each.direction.value} {each.name}" for each in wanted.objectives)
+    aims = ", ".join(f"{each.direction.value} {each.name}" for each in definition.objectives)
     tags = dict.fromkeys(changed, f"derived optimise {study.name}, {aims}")
     return set_tags(patch(text, changed, where=where), tags, where=where)
 

@@ -64,7 +64,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
 
 
 def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
-    """Cautions about the design with `values` (d,) under its dead load. Raises `DesignError` where it does not hold.
+    """Warnings about the design with `values` (d,) under its dead load. Raises `DesignError` where it does not hold.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_stable(neck_study(), np.array([0.00154]))
@@ -75,7 +75,7 @@ def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
         return ()
     advice = 'Add to [limits] for example buckling = "at least 2"'
     require(Finding("the best design", each.what, advice) for each in factors.refusals)
-    return tuple(Finding("the best design", each.what, each.advice) for each in factors.cautions)
+    return tuple(Finding("the best design", each.what, each.advice) for each in factors.warnings)
 
 
 @lru_cache(maxsize=2)

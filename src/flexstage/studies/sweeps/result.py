@@ -41,10 +41,10 @@ class ResponseEffects(Asked):
     standard errors of an index and of one of second order are those of Saltelli's plan, with pairs.
     """
 
-    least: float
+    min_value: float
     mean: float
     deviation: float
-    largest: float
+    max_value: float
     first_order: Mapping[str, float]
     total_order: Mapping[str, float] | None
     standard_error: float
@@ -117,10 +117,10 @@ class Sweep(StudyResult):
         return ResponseEffects(
             name=name,
             measure=self.study.columns[name],
-            least=float(found.low[index]),
+            min_value=float(found.low[index]),
             mean=float(found.mean[index]),
             deviation=float(found.deviation[index]),
-            largest=float(found.high[index]),
+            max_value=float(found.high[index]),
             first_order=dict(zip(found.variables, found.first[:, index].tolist(), strict=True)),
             total_order=total,
             standard_error=float(found.errors[0, index]),

@@ -9,7 +9,7 @@ from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.show.display import percent
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Head, Headline, Picture, Prose, page, section
-from flexstage.show.tables.caveats import caution_table
+from flexstage.show.tables.caveats import warning_table
 
 _METHOD = (
     "A generalised Prandtl-Ishlinskii model: plays of fixed thresholds, weights of 0 or more by least squares, a monotone envelope of the "
@@ -29,7 +29,7 @@ def hysteresis_report(test: StackTest) -> str:
     caption = "Grey the record, blue the model and its error; green the volts that the inverse gives for the recorded strokes."
     sections = [
         section("Hysteresis", [Picture(drawn, caption), stack_table(test), Prose(_METHOD)]),
-        section("Cautions", [caution_table(test.hysteresis.cautions)]),
+        section("Warnings", [warning_table(test.hysteresis.warnings)]),
         section("Model", [plays_table(test)]),
     ]
     named = test.source or "record"

@@ -18,7 +18,7 @@ from flexstage.experiment.formats.arrays import Contents, HeldArray, complex_of,
 from flexstage.experiment.formats.table.layout import Layout, read_layout
 from flexstage.experiment.formats.table.values import TableSamples, index_lines
 from flexstage.experiment.records.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
-from flexstage.experiment.records.options import Allow, Arrays, Kind, Options, assign, matches, select_names
+from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, assign, matches, select_names
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
@@ -42,7 +42,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     r"""What a CSV file holds: responses where a column is called `frequency` (or as the user says), else a record.
 
     Its times stand in the column `time`, or the one that is named. Raises `DesignError` where there is none and no rate is stated, for gaps
-    between times (passed over where `Allow.GAPS`), for a last line cut short (left out where `Allow.TRUNCATED`).
+    between times (passed over where `FaultTolerance.GAPS`), for a last line cut short (left out where `FaultTolerance.TRUNCATED`).
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -87,7 +87,7 @@ def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
     if cut is None and (announced is None or (lines.count >= announced and _ends_with_newline(path))):
         return whole
     unsure = lines.count - 1 if cut is not None or not _ends_with_newline(path) else lines.count
-    if Allow.TRUNCATED in options.allow and unsure > 0:
+    if FaultTolerance.TRUNCATED in options.accept_faults and unsure > 0:
         return replace(whole, length=unsure)
     what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {lines.count} of {announced} samples"
     advice = f'Export it anew, or accept "truncated" to use the {unsure} samples before'
@@ -146,7 +146,7 @@ def _clock(path: Path, layout: Layout, samples: TableSamples, time: int | None, 
         raise refuse(f"{path}: {layout.names[time]}", f'its unit is "{layout.units[time]}", where a time is expected', "Write s, ms or us")
     scale = TIME_SCALES.get(layout.units[time], 1.0)
     times = replace(samples, columns=(time,))
-    told = StatedClock(stated, allow_gaps=Allow.GAPS in options.allow)
+    told = StatedClock(stated, allow_gaps=FaultTolerance.GAPS in options.accept_faults)
     return determine_clock(
         _times(times, scale), lambda number: float(times.read(number, number + 1)[0, 0]) * scale, told, f"{path}: {layout.names[time]}"
     )

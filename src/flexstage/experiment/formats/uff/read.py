@@ -17,7 +17,7 @@ from flexstage.experiment.formats.arrays import SideBySide, complex_of
 from flexstage.experiment.formats.uff.function import COHERENCE, KINDS
 from flexstage.experiment.formats.uff.scan import DataSet, scan
 from flexstage.experiment.records.clock import Clock, StatedClock, determine_clock, longest_stretch
-from flexstage.experiment.records.options import Allow, Kind, Options, assign, matches, number_names, select_names
+from flexstage.experiment.records.options import FaultTolerance, Kind, Options, assign, matches, number_names, select_names
 from flexstage.experiment.records.record import Channel, Record, Responses, Role, Samples
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
@@ -59,14 +59,14 @@ def is_uff(start: bytes, _suffix: str) -> bool:
 def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """What a universal file holds: its time histories, its frequency responses, or both, as far as `options.kind` asks for them.
 
-    Raises `DesignError` with all that keeps it from being read: functions that break off (used as far as they go where `Allow.TRUNCATED`),
-    of different lengths or rates, of other kinds.
+    Raises `DesignError` with all that keeps it from being read: functions that break off (used as far as they go
+    where `FaultTolerance.TRUNCATED`), of different lengths or rates, of other kinds.
     """
     stated = options.arrays.stated()
     require(Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Leave it out") for meaning, name in stated)
     found, findings = scan(path)
     truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]
-    require([*findings, *([*truncated, *_missing_functions(path, found)] if Allow.TRUNCATED not in options.allow else ())])
+    require([*findings, *([*truncated, *_missing_functions(path, found)] if FaultTolerance.TRUNCATED not in options.accept_faults else ())])
     histories = [each for each in found if each.function.is_time]
     responses = [each for each in found if each.function.is_response]
     if not histories and not responses:
@@ -138,7 +138,7 @@ def _role(found: DataSet) -> Role:
 
 def _common_clock(path: Path, chosen: list[tuple[str, DataSet]], options: Options) -> Clock:
     """The clock all channels share. Raises `DesignError` where lengths, rates or starts differ."""
-    require(_lengths(path, chosen) if Allow.TRUNCATED not in options.allow else ())
+    require(_lengths(path, chosen) if FaultTolerance.TRUNCATED not in options.accept_faults else ())
     clocks = {name: _clock(path, name, each, options) for name, each in (chosen if not options.rate else chosen[:1])}
     first = next(iter(clocks.values()))
     require(_clock_findings(path, clocks))
@@ -174,7 +174,7 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
         return Clock(options.rate, 0.0, ((0, found.values.length),))
     values, length = found.values, found.values.length
     blocks = (values.read(start, min(start + _BLOCK, length))[:, 0] for start in range(0, length, _BLOCK))
-    told = StatedClock(allow_gaps=Allow.GAPS in options.allow)
+    told = StatedClock(allow_gaps=FaultTolerance.GAPS in options.accept_faults)
     return determine_clock(blocks, lambda number: float(values.read(number, number + 1)[0, 0]), told, f"{path}: {name}")
 
 
@@ -221,7 +221,7 @@ def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Option
     """Names of outputs and inputs between which every response is there."""
     outputs, inputs = (tuple(dict.fromkeys(pair[side] for pair in table)) for side in (0, 1))
     missing = {output: [input_ for input_ in inputs if (output, input_) not in table] for output in outputs}
-    if Allow.INCOMPLETE not in options.allow:
+    if FaultTolerance.INCOMPLETE not in options.accept_faults:
         advice = 'Measure them, name channels that are complete (inputs, outputs), or accept "incomplete" to leave this output out'
         require(
             Finding(f"{path}: {output}", f"its responses to {', '.join(lack)} are missing", advice)
@@ -313,7 +313,7 @@ def _coherence(
     size = table[outputs[0], inputs[0]].values.length
     stored = {_pair(each): each for each in found if each.values.length == size}
     lack = [(output, input_) for output in outputs for input_ in inputs if (output, input_) not in stored]
-    if lack and lack == list(table)[-1:] and len(table) > 1 and Allow.INCOMPLETE not in options.allow:
+    if lack and lack == list(table)[-1:] and len(table) > 1 and FaultTolerance.INCOMPLETE not in options.accept_faults:
         what = f"all responses have their coherence but the last, of {lack[0][0]} to {lack[0][1]}: the file may break off there"
         raise DesignError([Finding(str(path), what, 'Export the file anew, or accept "incomplete" to do without coherence')])
     if lack:

@@ -59,7 +59,7 @@ def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Fi
 
 
 def coarse_lines(known: Evidence, poles: Array) -> str | None:
-    """A caution where lines lie further apart than the narrowest of the modes found, at `poles` in Hz, is wide.
+    """A warning where lines lie further apart than the narrowest of the modes found, at `poles` in Hz, is wide.
 
     Candidates are poles of responses at those lines: what lies within one line of another mode may pass for it. With lines as close as the
     half-power bandwidth B = 2 zeta f a record of n averages lasts about n / B.
@@ -85,7 +85,7 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
 
 
 def unsearched_band(known: Evidence, reach: Reach) -> str | None:
-    """A caution where a part of the band that the user asked for could not be searched.
+    """A warning where a part of the band that the user asked for could not be searched.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -100,12 +100,12 @@ def unsearched_band(known: Evidence, reach: Reach) -> str | None:
     return f"modes from {reach.asked[0]:g} to {reach.asked[1]:g} Hz are asked for; {could}. Record {' and '.join(needed) or 'longer'}."
 
 
-def no_mode_caution(known: Evidence, reach: Reach) -> str:
+def no_mode_warning(known: Evidence, reach: Reach) -> str:
     """What it means that no mode was found: noise alone, no resonance, or too short a record to tell.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
-    >>> no_mode_caution(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:54]
+    >>> no_mode_warning(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:54]
     'no mode can be told, though inputs explain 85.5% of th'
     """
     middle = float(np.sqrt(reach.low * reach.high))

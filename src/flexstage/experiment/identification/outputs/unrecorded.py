@@ -110,7 +110,7 @@ def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None 
     said = f"a free decay is taken from where outputs are largest: {began}."
     return replace(
         found,
-        warnings=(_UNSCALED, said, *found.warnings),
+        data_warnings=(_UNSCALED, said, *found.data_warnings),
         provenance=f"identified from free decays in {where}: pLSCF, then maximum likelihood",
     )
 
@@ -166,7 +166,7 @@ def _result(record: Record, modes: Sequence[Shaken], density: Responses, band: t
         stabilisation=(),
         band=band,
         noise=np.median(np.abs(density.values[inside, :, 0]) ** 2, axis=0),
-        warnings=(_UNSCALED, *_none(modes)),
+        data_warnings=(_UNSCALED, *_none(modes)),
         provenance=f"identified from outputs alone, in {record.source or record.name or 'record'}: covariance-driven stochastic subspace",
     )
 

@@ -13,7 +13,7 @@ from flexstage.models.nonlinear.graph import System, advance, assemble, exerted_
 from flexstage.models.nonlinear.newton import TOLD, Found, lack, search
 from flexstage.models.nonlinear.paths.inertia import count_descents, lowest_stiffness, stiffness_scale, weakest_flexure
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
+from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status, put
 from flexstage.models.nonlinear.walk import walked
 from flexstage.spatial.rotation import logarithm
 
@@ -40,7 +40,7 @@ _AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
 class Course:
     """Loads and held coordinates of one case that change with a factor: those at zero, and what they gain per unit of the factor.
 
-    `effort` decides when each equilibrium on it is found; stability counts in the rows `kept` of its system.
+    `options` decide when each equilibrium on it is found; stability counts in the rows `kept` of its system.
     """
 
     model: Nonlinear
@@ -48,7 +48,7 @@ class Course:
     hold: Hold
     gain: Loads
     moved: Array
-    effort: Effort
+    options: SolverOptions
     kept: list[int]
 
     def at(self, factor: float) -> tuple[Loads, Hold]:
@@ -169,13 +169,13 @@ def step_along(course: Course, last: Point, length: float) -> Point | None:
 
     Corrections keep the factor where the path is steep; else they are normal to the step so far, and the factor follows.
     """
-    scale, effort, model = course.scale, course.effort, course.model
+    scale, options, model = course.scale, course.options, course.model
     whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose
     scaled = length * scale * last.along
     factor, step, turns = last.factor, whole, abs(last.slope) < _SOFTER * last.steepest
-    enough, own = min(effort.step, _ROUGH * length), abs(length * last.slope)
+    enough, own = min(options.step, _ROUGH * length), abs(length * last.slope)
     with np.errstate(all="ignore"):
-        for iteration in range(effort.iterations):
+        for iteration in range(options.iterations):
             if iteration:
                 system = assemble(model, pose, *course.at(factor))
                 step, change = _solved(system, -system.residual[0]), 0.0
@@ -190,9 +190,9 @@ def step_along(course: Course, last: Point, length: float) -> Point | None:
             if not isinstance(system.matrix, np.ndarray):
                 pose = walked(model, pose, course.at(factor + change)[0])
             factor, scaled = factor + change, scaled + (scale * step if iteration else 0.0)
-            if iteration and max(size, float(inside[0])) < enough and abs(change) <= effort.step * (own + abs(factor)):
+            if iteration and max(size, float(inside[0])) < enough and abs(change) <= options.step * (own + abs(factor)):
                 gap = float(lack(model, system)[0])
-                if gap < effort.gap:
+                if gap < options.gap:
                     return point_at(course, _one(pose, iteration + 1, gap), factor, step=scaled, start=last)
     return None
 
@@ -247,36 +247,36 @@ def point_at(course: Course, found: Found, factor: float, *, step: Array, start:
     return Point(found, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
 
 
-def rescue(model: Nonlinear, loads: Loads, hold: Hold, found: Found, effort: Effort) -> Found:
+def rescue(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: SolverOptions) -> Found:
     """What was found, with those cases that were found in part followed by arc length to their whole load, or to where it turns."""
     partly = np.flatnonzero((found.status != Status.CONVERGED) & (found.reached > 0.0))
-    for case in partly if effort.arcs else ():
+    for case in partly if options.arcs else ():
         one = np.array([case])
-        after = _rescued(model, loads.of(one), hold.of(one), found.of(one), effort)
+        after = _rescued(model, loads.of(one), hold.of(one), found.of(one), options)
         told = (put(getattr(found, name), one, getattr(after, name)) for name in TOLD)
         found = Found(found.pose.put(one, after.pose), *told)
     return found
 
 
-def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, effort: Effort) -> Found:
+def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: SolverOptions) -> Found:
     """One case: its load is followed from the share that was reached."""
     rows = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
-    course = Course(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, effort, rows)
+    course = Course(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, options, rows)
     last = first_point(course, found.pose, float(found.reached[0]))
     stride = _STRIDE
-    for _ in range(effort.arcs):
+    for _ in range(options.arcs):
         after = step_along(course, last, stride * _moved(course, last.found.pose))
         if after is None:
             stride *= 0.25
             if stride < _LEAST:
                 break
         elif after.factor >= 1.0:
-            whole = search(model, after.found.pose, loads, hold, effort)
+            whole = search(model, after.found.pose, loads, hold, options)
             return whole if whole.status[0] == Status.CONVERGED else found
-        elif after.factor < last.factor and not effort.past:
+        elif after.factor < last.factor and not options.past:
             break
         else:
-            last, stride = after, _STRIDE * (2.5 if effort.past else 1.0)
+            last, stride = after, _STRIDE * (2.5 if options.past else 1.0)
             found = replace(found, pose=after.found.pose, reached=np.maximum(found.reached, after.factor))
     return found
 

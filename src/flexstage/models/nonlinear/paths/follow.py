@@ -14,12 +14,12 @@ from flexstage.base.number import Array
 from flexstage.models.nonlinear.newton import USUAL, Found, Task, search
 from flexstage.models.nonlinear.paths.arc import Course, Point, first_point, march, misfit, point_at, step_along
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
+from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.spatial.rotation import logarithm
 
 FIRST = 1e-4
 """The first step in the motion of bodies, over the stage's size and in radians."""
-NEAR = Effort(halvings=0, iterations=15, arcs=0)
+NEAR = SolverOptions(halvings=0, iterations=15, arcs=0)
 """Each state starts from one next to it."""
 _POINTS, _JUMPS = 400, 8
 """Equilibria along a path, and steps over to another one, before it is given up."""
@@ -167,7 +167,7 @@ def _not_followed(last: Point, why: str, bent: Point | None) -> LowerBoundError:
     bound = last.factor if bend is None else bend
     reason = why if bend is None else f"it bends off there, an imperfect bifurcation, and moves {1.0 / _FLAT:g} times as far per load"
     what = f"it is stable up to {bound:.6g} times the load, and not followed beyond: {reason}"
-    return LowerBoundError([Finding("load", what, "Follow the load with fs.trace, or name another one")], bound)
+    return LowerBoundError([Finding("load", what, "Follow the load with fs.continuation, or name another one")], bound)
 
 
 def _bend(bent: Point | None, last: Point) -> float | None:

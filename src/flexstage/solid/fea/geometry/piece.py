@@ -13,7 +13,7 @@ from flexstage.base.register import Register
 from flexstage.base.storage.digest import digest
 from flexstage.mechanism.assembly.expand import PlacedLink
 from flexstage.parts.body import Cylinder, Solid
-from flexstage.parts.given import Joint
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.material import Material, Oriented
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.piezo import Piezo

@@ -16,8 +16,8 @@ from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.model import Contribution
+from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.condensation import Condensed, condense
-from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted, strut_of
 from flexstage.parts.shape import Shaped
 from flexstage.parts.stated import Stated

@@ -25,7 +25,7 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))
-    objective = setting.wanted.objectives[0]
+    objective = setting.definition.objectives[0]
     back = (-1.0 if objective.direction.sense is Sense.AT_LEAST else 1.0) * setting.scale(0)
     found = []
     for number, limit in enumerate(setting.kept):

@@ -13,6 +13,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.processes.threads import one_thread
+from flexstage.studies.optimisation.problem import OptimisationProblem
 from flexstage.studies.optimisation.result import Contradiction, Front
 from flexstage.studies.optimisation.search.contradiction import contradictions
 from flexstage.studies.optimisation.search.optimum import Count, Progress, best_of
@@ -20,7 +21,6 @@ from flexstage.studies.optimisation.search.problem import SPARE, Problem, Side
 from flexstage.studies.optimisation.search.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import Setting, setting
 from flexstage.studies.optimisation.values import Point
-from flexstage.studies.optimisation.wanted import Wanted
 from flexstage.studies.sweeps.definition import Study
 
 _KEEP = 1e-6
@@ -29,17 +29,17 @@ _KEEP = 1e-6
 
 @check_arguments
 @one_thread
-def pareto_front(study: Study, wanted: Wanted, progress: Progress | None = None) -> Front:
+def pareto_front(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Front:
     """The front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 
     First each objective alone, the other improved as far as that costs nothing; between these ends the first is optimised with the second
     bounded at equally spaced values, each from both ends. What another design of the front beats in both is left out. An interrupt ends it
     with what is there.
     """
-    if len(wanted.objectives) != 2:
-        raise refuse("optimise", f"found {len(wanted.objectives)} objectives", "A front is drawn of two")
+    if len(definition.objectives) != 2:
+        raise refuse("optimise", f"found {len(definition.objectives)} objectives", "A front is drawn of two")
     begun = time.monotonic()
-    set_up = setting(study, wanted)
+    set_up = setting(study, definition)
     counted = Count(progress, "ends of the front")
     found: list[Point] = []
     against: tuple[Contradiction, ...] = ()
@@ -56,7 +56,7 @@ def pareto_front(study: Study, wanted: Wanted, progress: Progress | None = None)
         interrupted = True
     return Front(
         study=study,
-        wanted=wanted,
+        definition=definition,
         limits=set_up.kept,
         before=set_up.before,
         points=tuple(non_dominated(set_up, found)),
@@ -95,7 +95,7 @@ def _bound(set_up: Setting, number: int, point: Point) -> Side:
 def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
     """Designs between the ends."""
     first, last = (float(end.values[1]) for end in ends)
-    levels = np.linspace(first, last, set_up.wanted.points)[1:-1]
+    levels = np.linspace(first, last, set_up.definition.points)[1:-1]
     if abs(last - first) <= _KEEP * set_up.scale(1):
         return []  # one design is best in both
     problems = [

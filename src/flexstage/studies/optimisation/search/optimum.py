@@ -11,6 +11,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.processes.threads import one_thread
+from flexstage.studies.optimisation.problem import OptimisationProblem
 from flexstage.studies.optimisation.result import Contradiction, Optimum, Rounded, Start
 from flexstage.studies.optimisation.rounding import round_to_steps
 from flexstage.studies.optimisation.search.binding import binding
@@ -19,7 +20,6 @@ from flexstage.studies.optimisation.search.problem import SPARE, Problem
 from flexstage.studies.optimisation.search.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import Setting, setting
 from flexstage.studies.optimisation.values import Point
-from flexstage.studies.optimisation.wanted import Wanted
 from flexstage.studies.sweeps.definition import Study
 
 _ALIKE = 1e-4
@@ -30,7 +30,7 @@ Progress = Callable[[str], None]
 
 @check_arguments
 @one_thread
-def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> Optimum:
+def optimise(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Optimum:
     """The best design within the variables' ranges that keeps all limits.
 
     From every start a sequence of convex models with exact derivatives; frequencies enter as matrices of neighbouring modes, so that
@@ -42,10 +42,10 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
     >>> found.agreeing, [each.name for each in found.binding]
     (2, ['stroke.x at least 18 um'])
     """
-    if len(wanted.objectives) != 1:
-        raise refuse("optimise", f"there are {len(wanted.objectives)} objectives", "Draw a front of two with `pareto_front`")
+    if len(definition.objectives) != 1:
+        raise refuse("optimise", f"there are {len(definition.objectives)} objectives", "Draw a front of two with `pareto_front`")
     begun = time.monotonic()
-    set_up = setting(study, wanted)
+    set_up = setting(study, definition)
     problem, begins = set_up.problem, set_up.starts()
     counted = Count(progress, "searching")
     traces = [Trace() for _ in begins]
@@ -57,7 +57,7 @@ def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> 
     starts = tuple(_start(problem, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
     return Optimum(
         study=study,
-        wanted=wanted,
+        definition=definition,
         limits=set_up.kept,
         before=set_up.before,
         point=point,

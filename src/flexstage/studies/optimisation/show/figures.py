@@ -28,7 +28,7 @@ def convergence_figure(found: Optimum) -> Any:
 
 
 def _histories(ax: Any, found: Optimum) -> None:
-    objective = found.wanted.objectives[0]
+    objective = found.definition.objectives[0]
     values = np.concatenate([start.history[:, 0] for start in found.starts])
     form = display_unit_of(objective.measure.quantity.si, float(np.max(np.abs(values), initial=0.0)))
     for index, start in enumerate(found.starts):
@@ -63,7 +63,7 @@ def front_figure(found: Front) -> Any:
     """Both objectives of the designs of a front, and the design as it stands."""
     forms = [
         display_unit_of(each.measure.quantity.si, float(np.max(np.abs([*found.values[:, number], found.before.values[number]]))))
-        for number, each in enumerate(found.wanted.objectives)
+        for number, each in enumerate(found.definition.objectives)
     ]
     with style_context():
         figure = canvas(FULL, 3.0)
@@ -73,7 +73,7 @@ def front_figure(found: Front) -> Any:
         stands = found.before.values[:2] * np.array([forms[0].factor, forms[1].factor])
         ax.plot(stands[1], stands[0], "o", markerfacecolor="none", markeredgecolor=INK, label="as it stands")
         for axis, number in ((ax.set_xlabel, 1), (ax.set_ylabel, 0)):
-            each = found.wanted.objectives[number]
+            each = found.definition.objectives[number]
             axis(f"{each.name} [{forms[number].unit}], {each.direction.value}")
         ax.legend()
     return figure

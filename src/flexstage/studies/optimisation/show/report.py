@@ -37,7 +37,7 @@ def optimise_report(found: Optimum) -> str:
     Raises `DesignError` where the best design does not hold under its dead load.
     """
     study = found.study
-    cautions = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
+    warnings = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
     objective, variables, limits, *rest = optimise_tables(found)
     search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
     final = None if found.final is None else study.mechanism_for(values_of(study, found.final.shares))
@@ -47,7 +47,7 @@ def optimise_report(found: Optimum) -> str:
     sections: list[Section | None] = [
         _stage(study, final, stages),
         section("Objective", [objective, search]),
-        caveat_section(study.design, cautions),
+        caveat_section(study.design, warnings),
         section("Variables", [variables]),
         section("Limits", [limits, *rest[:-1]]),
         section("Starts", rest[-1:]),
@@ -85,11 +85,11 @@ def front_report(found: Front) -> str:
 
 def _headline(found: Optimum) -> Headline:
     """The objective before and after, and how many limits are kept."""
-    asked, point = found.wanted.objectives[0], found.final
+    asked, point = found.definition.objectives[0], found.final
     if point is None:
         return Headline(f"No design was found: {found.failure}.", good=False)
     before, after = (format_value(found.value(each), asked.measure.quantity.si) for each in (found.before, point))
-    limits = zip(found.limits, point.values[len(found.wanted.objectives) :], strict=True)
+    limits = zip(found.limits, point.values[len(found.definition.objectives) :], strict=True)
     kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
     told = f"; {sum(kept)} of {len(kept)} limits are kept" if kept else ""
     return Headline(f"{asked.name}: {before} as it stands, {after} at the optimum{told}.", all(kept))

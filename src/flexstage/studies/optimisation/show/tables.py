@@ -28,7 +28,7 @@ def optimise_tables(found: Optimum) -> list[Table]:
 
 def front_tables(found: Front) -> list[Table]:
     """The designs of a front: objectives and variables."""
-    objectives = found.wanted.objectives
+    objectives = found.definition.objectives
     heads = [f"{each.name} ({each.direction.value})" for each in objectives]
     rows = []
     for index, point in enumerate(found.points):
@@ -53,7 +53,7 @@ def _value(value: float, quantity: Quantity, *, relative: bool) -> str:
 
 
 def _objective(found: Optimum) -> Table:
-    objective = found.wanted.objectives[0]
+    objective = found.definition.objectives[0]
     unit = objective.measure.quantity.si
     rows = [("as it stands", format_value(found.value(found.before), unit, 6), "")]
     for title, point in (("optimum", found.point), ("rounded", None if found.rounded is None else found.rounded.point)):
@@ -89,7 +89,7 @@ def _variables(found: Optimum) -> Table:
 
 
 def _limits(found: Optimum) -> Table:
-    first = len(found.wanted.objectives)
+    first = len(found.definition.objectives)
     point = found.final or found.point or found.before
     rows = []
     for index, each in enumerate(found.limits):
@@ -103,7 +103,7 @@ def _limits(found: Optimum) -> Table:
 
 
 def _binding(found: Optimum) -> Table:
-    unit = found.wanted.objectives[0].measure.quantity.si
+    unit = found.definition.objectives[0].measure.quantity.si
     rows = [(Cell(each.name, Mark.STRONG), format_value(each.limit, each.unit, 6), *_price(each, unit)) for each in found.binding]
     note = (
         "What the objective gains when the limit, or end of the range, gives way by 1 % of its value; and its change per unit it is raised."
@@ -118,7 +118,7 @@ def _price(each: Binding, unit: str) -> tuple[str, str]:
 
 
 def _starts(found: Optimum) -> Table:
-    unit = found.wanted.objectives[0].measure.quantity.si
+    unit = found.definition.objectives[0].measure.quantity.si
     rows = []
     for index, each in enumerate(found.starts):
         ended = each.reason or ("converged" if each.converged else "no further step found")
@@ -144,5 +144,5 @@ def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str
 
 def _nearest_value(key: str, point: str, at: Point, found: Optimum | Front) -> str:
     index = next(number for number, limit in enumerate(found.limits) if (limit.key, limit.point) == (key, point))
-    value = float(at.values[len(found.wanted.objectives) + index])
+    value = float(at.values[len(found.definition.objectives) + index])
     return f"{key} {format_value(value, found.limits[index].quantity.si, 5)}"

@@ -1,4 +1,4 @@
-"""A stage away from its drawn position, as viewers play it: where everything is along a path, what shakes or gives way at a state."""
+"""Animations of a stage away from its undeformed configuration: positions along a load path, modes and buckling modes at a state."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.analysis.loaded.load_cases import REST, CaseFactor
 from flexstage.analysis.loaded.misalign import Misaligned
-from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.loaded.stroke import Beyond, Stroke
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
@@ -19,8 +19,8 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.lines import Line, Motions, centre_lines, critical_motion, mode_motions
-from flexstage.models.nonlinear.paths.critical import Critical
-from flexstage.models.nonlinear.paths.path import Path
+from flexstage.models.nonlinear.paths.critical_load import Critical
+from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.show.display import DisplayUnit, display_unit_of, format_value, to_typography
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.show.viewer.motions import Course, Curve, Group, Motion
@@ -45,7 +45,7 @@ class _Label:
     frequency: float | None = None
 
 
-def stroke_data(mechanism: Mechanism, path: Path, found: Stroke, *, text: str = "") -> StageData:
+def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: str = "") -> StageData:
     """A stage along a path: one motion through its points, and the first modes at its last one that is stable.
 
     Bodies lie where they are; flexures along their centre lines, what is only known by its 6x6 evenly between its ends. Points without an
@@ -53,14 +53,14 @@ def stroke_data(mechanism: Mechanism, path: Path, found: Stroke, *, text: str = 
     """
     still = still_data(mechanism, text=text)
     motions = [_along(still, path.state, path.drive, found), *_modes_there(still, path)]
-    return replace(still, motions=tuple(motions), notes=tuple(str(each) for each in found.cautions))
+    return replace(still, motions=tuple(motions), notes=tuple(str(each) for each in found.warnings))
 
 
 def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
     """A stage as one of its copies is forced into a misaligned seat: one motion from none to all of it."""
     still = still_data(mechanism)
     motion = _along(still, found.state, f"{found.copy} {found.axis}", found)
-    return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.cautions))
+    return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.warnings))
 
 
 def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: Beyond | None = None) -> StageData:
@@ -78,7 +78,7 @@ def _gives_way(still: StageData, case: CaseFactor, found: Critical, number: int)
     yield from _about(still, found.state, critical_motion(found), [_Label(name, label, to_typography(f"{case.load}, {case.place}"))])
 
 
-def modes_at_data(mechanism: Mechanism, there: Stance, found: Modes, said: str, *, count: int = 12) -> StageData:
+def modes_at_data(mechanism: Mechanism, there: OperatingPoint, found: Modes, said: str, *, count: int = 12) -> StageData:
     """A stage with its modes about where it stands; `said` is where that is."""
     still = still_data(mechanism)
     moved = mode_motions(there.state, found.shapes[:, :count], there.locked)
@@ -145,7 +145,7 @@ def _parts_beyond(found: Stroke | Misaligned, numbers: Mapping[str, int]) -> tup
     )
 
 
-def _modes_there(still: StageData, path: Path) -> Iterator[Motion]:
+def _modes_there(still: StageData, path: LoadPath) -> Iterator[Motion]:
     """The first modes at the last point that is stable without what holds it."""
     from flexstage.models.linear.eigen import eigen
     from flexstage.models.nonlinear.linearise import linearise
@@ -161,7 +161,7 @@ def _modes_there(still: StageData, path: Path) -> Iterator[Motion]:
     yield from _about(still, last, moved, _labels(frequencies, _told(path, int(stable[-1]))))
 
 
-def _told(path: Path, point: int) -> str:
+def _told(path: LoadPath, point: int) -> str:
     """Where a point of a path is, in words."""
     channel = next((each.unit for each in path.state.model.inputs if each.name == path.drive), None)
     unit = channel or ("rad" if path.drive.rpartition(".")[2].startswith("r") else "m")
@@ -287,15 +287,15 @@ def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[
 
 
 @check_arguments
-def play(mechanism: Mechanism, path: Path) -> Any:
-    """The stage as it moves along a path at large displacements, to turn and to play: notebooks show it, `save` writes it as a page.
+def animate(mechanism: Mechanism, path: LoadPath) -> Any:
+    """Animate a stage along a load path at large displacements: notebooks show the view, `save` writes it as a page.
 
-    Curves of force, stiffness, parasitic motion and frequencies stand below, with a cursor; what is beyond a limit is red. Small paths are
-    drawn larger, and the factor stands beside them.
+    Curves of force, stiffness, parasitic motion and frequencies are below, with a cursor; values beyond a limit are red. Small paths are
+    magnified, and the factor is shown.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
-    >>> fs.play(stage, fs.path(fs.nonlinear(stage), "platform.x", [0.0, 1e-4])).html[:15]
+    >>> fs.animate(stage, fs.load_path(fs.nonlinear(stage), "platform.x", [0.0, 1e-4])).html[:15]
     '<!doctype html>'
     """
     from flexstage.analysis.loaded.stroke import stroke

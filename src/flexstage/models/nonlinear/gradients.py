@@ -31,7 +31,7 @@ Results = Callable[[State], Any]
 
 
 @check_arguments
-def over_designs(
+def evaluate_designs(
     mechanism: Mechanism,
     results: Results,
     loads: Mapping[str, Number] | None = None,
@@ -40,7 +40,7 @@ def over_designs(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Results (d, ...) of a batch of d designs, a description whose numbers are arrays; of a single design (...).
+    """Evaluate results (d, ...) of a batch of d designs, a description whose numbers are arrays; of a single design (...).
 
     Loads and holds are those of `equilibrium`, their cases on the axes after that of designs. Where no equilibrium is found results are
     NaN, as `results` has them. Leaves of one proportion share their tables.
@@ -48,7 +48,7 @@ def over_designs(
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.addresses.address import set_value
     >>> several = set_value(parallelogram(), "materials.steel.young", np.array([200e9, 210e9]))
-    >>> over_designs(several, State.twist, weight=0.0).shape
+    >>> evaluate_designs(several, State.twist, weight=0.0).shape
     (2, 6)
     """
     count = designs(mechanism)
@@ -61,7 +61,7 @@ def over_designs(
 
 
 @check_arguments
-def slopes(
+def gradients(
     mechanism: Mechanism,
     names: Iterable[str],
     results: Results,
@@ -71,16 +71,16 @@ def slopes(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Slopes (a, ...) of results by the numbers at a addresses, per SI unit, loads and holds staying as they are.
+    """Gradients (a, ...) of results by the numbers at a addresses, per SI unit, loads and holds staying as they are.
 
     By the implicit function theorem: dq/dp = - K^-1 dF/dp, K the stage's stiffness with all that flexures do inside, dF/dp what their
     residual at the known state becomes by the number, in four points weighed to fourth order; results are taken there, once each. Right to
-    about 1e-8 of the result over the number. Slopes are NaN where there is no equilibrium. Raises `DesignError` for what is not a single
+    about 1e-8 of the result over the number. Gradients are NaN where there is no equilibrium. Raises `DesignError` for what is not a single
     number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()
-    >>> found = slopes(stage, ["materials.steel.young"], lambda state: state.displacement()[0], {"platform.fx": 100.0}, weight=0.0)
+    >>> found = gradients(stage, ["materials.steel.young"], lambda state: state.displacement()[0], {"platform.fx": 100.0}, weight=0.0)
     >>> bool(found[0] < 0.0)
     True
     """
@@ -95,7 +95,7 @@ def slopes(
 def _slope(mechanism: Mechanism, name: str, size: float, beside: Callable[[Nonlinear], Array]) -> Array:
     value = get(mechanism, name)
     if value is None or not isinstance(locate(mechanism, name).node, NumberNode):
-        raise refuse(name, "slopes are taken by single numbers that the description states", "State it, or name another number")
+        raise refuse(name, "gradients are taken by single numbers that the description states", "State it, or name another number")
     step = _SHARE * (abs(float(value)) or size)
     moved = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
     return np.sum([weight * beside(model) for model, weight in zip(moved, _STENCIL.values(), strict=True)], axis=0) / step

@@ -1,4 +1,4 @@
-"""What an optimisation is to find: objectives, how often it begins anew, and which requirements hold."""
+"""Optimisation problem: objectives, number of starts, and the requirements that are limits."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Objective(Asked):
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What the `[optimise]` section of a study's file says.
+class OptimisationProblem:
+    """Optimisation problem, as the `[optimise]` section of a study's file defines it.
 
     One objective, or two for a front of `points` designs. `starts`: how many designs the search begins from, the design as it stands first,
     the others a Sobol sequence of this `seed`. `requirements`: the design's own `[requirements]` lines are limits too.
@@ -43,13 +43,13 @@ class Wanted:
     requirements: bool = True
 
 
-def limits(study: Study, wanted: Wanted) -> tuple[Requirement, ...]:
+def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
     """All limits: the study's, then the design's own requirements on measures that the study does not limit on that side.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]
     ['stroke.x', 'frequency.platform.1', 'safety']
     """
-    own = requirements(study.design) if wanted.requirements else ()
+    own = requirements(study.design) if definition.requirements else ()
     said = {(each.key, each.point, each.sense) for each in study.limits}
     return (*study.limits, *(each for each in own if (each.key, each.point, each.sense) not in said))

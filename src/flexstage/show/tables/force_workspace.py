@@ -6,21 +6,21 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flexstage.analysis.workspace.reach import ForceReach
+from flexstage.analysis.workspace.force_workspace import ForceWorkspace
 from flexstage.base.number import first_design
 from flexstage.show.display import NO_VALUE, display_unit_of, number
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
-def reach_tables(found: ForceReach) -> Iterator[Table]:
+def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table]:
     """The motion along each coordinate with what limits it; what it takes of every coil."""
     yield reach_table(found)
     if found.current.columns:
         yield need_table(found)
 
 
-def reach_table(found: ForceReach) -> Table:
+def reach_table(found: ForceWorkspace) -> Table:
     """How far single coordinates go either way, held for ever and in short use, and what ends it."""
     rows: list[tuple[Cell | str, ...]] = []
     both = (first_design(found.held, 1), first_design(found.held_briefly, 1))
@@ -38,7 +38,7 @@ def reach_table(found: ForceReach) -> Table:
     return make_table("Reach", heads, rows, notes=notes, provenance=found.provenance)
 
 
-def need_table(found: ForceReach) -> Table:
+def need_table(found: ForceWorkspace) -> Table:
     """Current, volts, heat and warming of every coil that holds the platform at its reach."""
     rows: list[tuple[Cell | str, ...]] = []
     needs = (found.current, found.voltage, found.power, found.rise)

@@ -1,4 +1,4 @@
-"""Reach of stages that forces move: how far along each axis, what limits it, and what holding it there takes."""
+"""Force workspace, of stages that forces move: travel along each axis, its limits, and the currents that keep it there."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ _LIMIT = 'Add for example peak_current = "2 A" to the coil, or maximum = "20 N" 
 
 
 @dataclass(frozen=True, eq=False)
-class ForceReach(InNotebook):
-    """How far a point goes along single coordinates, either way, by the elastic model; coordinates alone where the inputs allow it.
+class ForceWorkspace(InNotebook):
+    """Force workspace: travel of a point along single coordinates, either way, by the elastic model; alone where the inputs allow it.
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate, the other ideal
     ones at zero, or, where `alone` says so, giving way. `bounds` (coordinates x causes) [m, rad] is the motion at which each cause ends it
@@ -83,7 +83,7 @@ def _least(bounds: Array) -> Array:
 
 
 @check_arguments
-def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceReach:
+def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceWorkspace:
     """Limit over compliance along every ideal motion, of stages with force actuators.
 
     C = dx/du (elastic, strokes and forces) gives the inputs per motion, G = C^-1 for as many inputs as motions, of least share of their
@@ -94,12 +94,12 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
     actuator, no ideal motion, or none that an input moves.
     """
     if not kinematics.thrusts or not kinematics.mobility:
-        raise refuse("reach", "the stage has no force actuator that moves it", "Ask for its workspace, which strokes determine")
+        raise refuse("force_workspace", "the stage has no force actuator that moves it", "Ask for its workspace, which strokes determine")
     assembly = expand(mechanism)
     inputs, gain, names = model.actuators, *_moved(model, point, kinematics.coordinates)
     if not names:
         what = f"no actuator moves {point} along any ideal motion ({', '.join(kinematics.coordinates)})"
-        raise refuse("reach", what, "Look which way the actuators push, and how they turn with what they are joined to")
+        raise refuse("force_workspace", what, "Look which way the actuators push, and how they turn with what they are joined to")
     limits = {brief: _input_limits(mechanism, assembly, inputs, brief=brief) for brief in (False, True)}
     per_motion, alone = _inverse(gain, _sizes(limits[False]))
     per_motion = _without_rounding(per_motion)
@@ -111,7 +111,7 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
     units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in names)
     bounds = {brief: _bounds(names, [*_by_input(inputs, known, per_motion), *others], units) for brief, known in limits.items()}
     channels = tuple(channel.unit for channel in model.inputs if channel.name in inputs)
-    return ForceReach(
+    return ForceWorkspace(
         point=point,
         coordinates=names,
         alone=alone,
@@ -320,7 +320,7 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
     return StrokeLimits(inputs, *(np.stack(np.broadcast_arrays(*each), axis=-1) for each in (low, high)))
 
 
-def bounds_along(found: ForceReach, name: str) -> Array:
+def bounds_along(found: ForceWorkspace, name: str) -> Array:
     """The bounds (..., k) of the motion along one coordinate, infinite where a limit is not stated; refused where none is."""
     if name not in found.coordinates:
         what = "no actuator moves it" if name in found.unmoved else "is no ideal motion of this stage"
@@ -328,6 +328,6 @@ def bounds_along(found: ForceReach, name: str) -> Array:
     place = found.coordinates.index(name)
     if np.any(np.isnan(found.held[..., place])):
         what = "no limit of its actuators is stated"
-        raise refuse(f"reach.{name}", what, _LIMIT)
+        raise refuse(f"force_workspace.{name}", what, _LIMIT)
     values = found.bounds.values[..., place, :]
     return np.where(np.isnan(values), np.inf, values)

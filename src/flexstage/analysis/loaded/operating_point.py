@@ -1,4 +1,4 @@
-"""How a stage stands away from its drawn position: brought somewhere, loaded, held, heated; and small motions about it."""
+"""Operating points: equilibria of a stage that is displaced, loaded, fixed or heated, and small motions about them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.loaded.strained import left_out, strain_cautions
+from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
@@ -22,7 +22,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.nonlinear.elements.strain import strains
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
 from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.paths.critical import require_continuation, unstable_motions
+from flexstage.models.nonlinear.paths.critical_load import require_continuation, unstable_motions
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
@@ -33,8 +33,8 @@ _SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
 
 
 @dataclass(frozen=True, eq=False)
-class Stance(InNotebook):
-    """How a stage stands: `sag` is where its weight, loads and heat bring it from its drawn, unloaded position, `moved` how far from there.
+class OperatingPoint(InNotebook):
+    """Operating point: `sag` is where its weight, loads and heat bring it from its drawn, unloaded position, `moved` how far from there.
 
     Both have a row a place (the platform and named points), columns displacement and rotation vector; None where it is brought nowhere.
     `held` tells of every coordinate that was brought somewhere or is locked: its value counted from the sagged position and the force that
@@ -57,21 +57,21 @@ class Stance(InNotebook):
         return linearise(self.state, locked=self.locked, inner=False)
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory there, and drives that do nothing."""
-        return (*self.doubts, *strain_cautions(strains(self.state)), *left_out(self.state))
+        return (*self.doubts, *strain_warnings(strains(self.state)), *left_out(self.state))
 
 
 @check_arguments
-def stance(
+def operating_point(
     mechanism: Mechanism,
     at: Mapping[str, float] | None = None,
     *,
     loads: Mapping[str, float] | None = None,
     fixed: Sequence[str] = (),
     temperature: float = 0.0,
-) -> Stance:
-    """Bring a stage somewhere at large displacements, and read small motions about that place.
+) -> OperatingPoint:
+    """Solve the operating point of a stage at large displacements, and linearise about it.
 
     The stage first sags under its weight, payloads, preloads and stated forces, under `loads` (as in `equilibrium`) and `temperature` (a
     uniform change [K]). From there `at` brings coordinates (`platform.y` [m], `platform.rz` [rad], a component of the rotation vector) by
@@ -80,7 +80,7 @@ def stance(
     contradicts itself, where no equilibrium is found (it says how far there is one), and where the released stage does not stay.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> found = stance(parallelogram(), {"platform.x": 1e-4})
+    >>> found = operating_point(parallelogram(), {"platform.x": 1e-4})
     >>> round(float(found.moved.at("platform", "x")) * 1e6, 3), round(float(found.held.at("platform.x", "force")))
     (100.0, 1939)
     """
@@ -98,7 +98,7 @@ def stance(
     units = (TWIST_UNITS,) * len(places)
     sag = np.stack([rest.twist(name) for name in places])
     linear = linearise(state, locked=asked.hold)
-    return Stance(
+    return OperatingPoint(
         sag=Matrix(sag, places, COMPONENTS, units),
         moved=Matrix(np.stack([state.twist(name) for name in places]) - sag, places, COMPONENTS, units) if asked.at else None,
         held=_held(asked, state),

@@ -19,7 +19,7 @@ from flexstage.models.nonlinear.paths.arc import Course, Point, first_point, loa
 from flexstage.models.nonlinear.paths.follow import NEAR, VANISHED, Followed, continued, follow_to_event
 from flexstage.models.nonlinear.paths.inertia import count_descents, kept_rows, lowest_stiffness, weakest_flexure
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import STATED, WEIGHT, Effort, Loads, Status
+from flexstage.models.nonlinear.state import STATED, WEIGHT, Loads, SolverOptions, Status
 
 _MOST = 1e12
 """The largest factor."""
@@ -70,7 +70,7 @@ def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Ar
 
 
 @check_arguments
-def critical(  # noqa: PLR0913 (what stays, one by one)
+def critical_load(  # noqa: PLR0913 (what stays, one by one)
     model: Nonlinear,
     load: Mapping[str, float],
     *,
@@ -83,7 +83,7 @@ def critical(  # noqa: PLR0913 (what stays, one by one)
     most: float = _MOST,
     tolerance: float = 1e-9,
 ) -> Critical:
-    """The factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) staying as it is.
+    """Critical load: the factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) constant.
 
     Loads are named as in `equilibrium`, and so are coordinates in `hold`, whose values then grow; `weight` names the stage's own, which
     then counts as a load alone if `weight` is zero, and `stated forces` those of the description with its preloads, likewise. Other
@@ -146,7 +146,9 @@ def require_continuation(start: State, end: State) -> None:
         raise refuse("stage", "the equilibrium found under its loads is not the continuation of the unloaded stage", LESS)
 
 
-def course_of(start: State, load: Mapping[str, float], factor: float, effort: Effort, *, locked: Sequence[str] | None = None) -> Course:
+def course_of(
+    start: State, load: Mapping[str, float], factor: float, options: SolverOptions, *, locked: Sequence[str] | None = None
+) -> Course:
     """The course of a load that changes by a factor, from a state that has it so many times."""
     model = start.model
     rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
@@ -154,7 +156,7 @@ def course_of(start: State, load: Mapping[str, float], factor: float, effort: Ef
     begun = Loads(*(getattr(start.loads, name) - factor * getattr(gain, name) for name in ("inputs", "gravity", "constant")))
     moved = np.array([[load.get(name, 0.0) for name in start.held]])
     kept = kept_rows(model, start.held, start.held if locked is None else locked)
-    return Course(model, begun, replace(start.hold, value=start.hold.value - factor * moved), gain, moved, effort, kept)
+    return Course(model, begun, replace(start.hold, value=start.hold.value - factor * moved), gain, moved, options, kept)
 
 
 def state_at(course: Course, point: Point, held: tuple[str, ...]) -> State:

@@ -1,4 +1,4 @@
-"""Paths of equilibria: over a drive from end to end, or along a load past the points where it turns (docs/nonlinear.md, 26 and 27)."""
+"""Load paths: equilibria over a drive from end to end, or by arc-length continuation past limit points (docs/nonlinear.md, 26 and 27)."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from flexstage.base.number import Array
 from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium, require_equilibrium, state
 from flexstage.models.nonlinear.newton import USUAL, Task, join
 from flexstage.models.nonlinear.paths.arc import Course, Point, critical_point, first_point, follow_course
-from flexstage.models.nonlinear.paths.critical import Critical, Kind, course_of, critical, unstable_motions
+from flexstage.models.nonlinear.paths.critical_load import Critical, Kind, course_of, critical_load, unstable_motions
 from flexstage.models.nonlinear.paths.follow import continued
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads, Status
+from flexstage.models.nonlinear.state import Loads, SolverOptions, Status
 from flexstage.spatial.frame import COMPONENTS
 
 
@@ -33,8 +33,8 @@ class Event:
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
-    """Equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], the `state` of each.
+class LoadPath:
+    """Load path, equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], the `state` of each.
 
     `motions` (k,) is how many ways each would leave its equilibrium (0: stable; -1: not found), what a held drive holds counted as held.
     `locked` coordinates stay where they are along it. `turns` (k - 1,) are the extreme loads between its points, NaN where the load is
@@ -48,9 +48,9 @@ class Path:
     locked: tuple[str, ...] = ()
     turns: Array | None = None
 
-    def some(self, points: Array) -> Path:
+    def some(self, points: Array) -> LoadPath:
         """Some of its points, by their numbers."""
-        return Path(self.drive, self.values[points], self.state.some(points), self.motions[points], self.locked)
+        return LoadPath(self.drive, self.values[points], self.state.some(points), self.motions[points], self.locked)
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -68,7 +68,7 @@ class Path:
 
 
 @check_arguments
-def path(
+def load_path(
     model: Nonlinear,
     drive: str,
     values: Array,
@@ -76,9 +76,9 @@ def path(
     loads: Mapping[str, float] | None = None,
     hold: Mapping[str, float] | None = None,
     weight: float = 1.0,
-    effort: Effort = USUAL,
-) -> Path:
-    """Equilibria as `drive` takes `values` (k,): a coordinate that is held (`platform.y`), or an actuator's stroke, force or a wrench.
+    options: SolverOptions = USUAL,
+) -> LoadPath:
+    """Load path: equilibria as `drive` takes `values` (k,): a held coordinate (`platform.y`), or an actuator's stroke, force or a wrench.
 
     Coordinates in `hold` stay locked at their values. All values are tried at once from the drawn position; what fails starts again from
     its nearest neighbour that was found. Stable states that do not continue the stage at rest along the drive have no numbers, as in
@@ -86,16 +86,16 @@ def path(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = path(nonlinear(parallelogram()), "platform.x", np.linspace(-1e-4, 1e-4, 3), weight=0.0)
+    >>> found = load_path(nonlinear(parallelogram()), "platform.x", np.linspace(-1e-4, 1e-4, 3), weight=0.0)
     >>> found.state.reactions[:, 0].round(0).tolist(), found.motions.tolist()
     ([-1939.0, 0.0, 1939.0], [0, 0, 0])
     """
     values = np.asarray(values, dtype=float)
     rest = equilibrium(model, loads, hold=hold, weight=weight)
-    found = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, effort=effort)
+    found = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, options=options)
     begin, start = begin_along(rest, drive, loads or {}, hold or {}, weight)
     found = continue_along(begin, found, values - start)
-    return Path(drive, values, found, unstable_motions(found), tuple(hold or {}))
+    return LoadPath(drive, values, found, unstable_motions(found), tuple(hold or {}))
 
 
 def begin_along(rest: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
@@ -139,23 +139,23 @@ def equilibria_along(
     loads: Mapping[str, float] | None = None,
     hold: Mapping[str, float] | None = None,
     weight: float = 1.0,
-    effort: Effort = USUAL,
+    options: SolverOptions = USUAL,
 ) -> State:
-    """The states (k,) of a `path`, of which nothing is asked but where they are.
+    """The states (k,) of a `load_path`, of which nothing is asked but where they are.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> equilibria_along(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4]), weight=0.0).reactions[:, 0].round(0).tolist()
     [0.0, 1939.0]
     """
-    values, rest, locked, effort = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(effort, arcs=0)
+    values, rest, locked, options = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(options, arcs=0)
     known = {channel.name for channel in model.inputs}
 
     def at(some: Array, start: State | None) -> State:
         if drive in known:
             driven = {**rest, drive: some + rest.get(drive, 0.0)}
-            return equilibrium(model, driven, hold=locked, weight=weight, start=start, effort=effort)
-        return equilibrium(model, rest, hold={drive: some, **locked}, weight=weight, start=start, effort=effort)
+            return equilibrium(model, driven, hold=locked, weight=weight, start=start, options=options)
+        return equilibrium(model, rest, hold={drive: some, **locked}, weight=weight, start=start, options=options)
 
     found = at(values, None)
     while 0 < (count := int(np.sum(found.converged))) < values.size:
@@ -189,7 +189,7 @@ def equilibria_of_designs(
     if drive in {channel.name for channel in models[0].inputs}:
         return [each() for each in alone]
     held = [{drive: some, **locked} for some, locked in zip(values, hold, strict=True)]
-    found = equilibria(models, loads, hold=held, weight=weight, effort=replace(USUAL, arcs=0))
+    found = equilibria(models, loads, hold=held, weight=weight, options=replace(USUAL, arcs=0))
     return [one if one.converged.all() else again() for one, again in zip(found, alone, strict=True)]
 
 
@@ -202,7 +202,7 @@ def _neighbour(found: State) -> State:
 
 
 @check_arguments
-def trace(
+def continuation(
     model: Nonlinear,
     load: Mapping[str, float],
     *,
@@ -211,9 +211,9 @@ def trace(
     rest: Mapping[str, float] | None = None,
     hold: Mapping[str, float] | None = None,
     weight: float = 1.0,
-    effort: Effort = USUAL,
-) -> Path:
-    """Equilibria along the factor on `load`, by arc length: past limits, where the load turns and the stage goes on.
+    options: SolverOptions = USUAL,
+) -> LoadPath:
+    """Arc-length continuation: equilibria along the factor on `load`, past limit points.
 
     `step` is the length of a step in the motion of the bodies, over the flexures' length and in radians; `points` how many steps at most.
     Coordinates in `hold` stay locked at their values. The path ends where no further equilibrium is found. After E. Riks (Int. J. Solids
@@ -221,7 +221,7 @@ def trace(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = trace(nonlinear(parallelogram()), {"platform.fx": 100.0}, points=2, weight=0.0)
+    >>> found = continuation(nonlinear(parallelogram()), {"platform.fx": 100.0}, points=2, weight=0.0)
     >>> found.values.size, bool(found.state.converged.all())
     (3, True)
     """
@@ -231,13 +231,13 @@ def trace(
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
         raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
-    course = course_of(start, load, 0.0, effort)
+    course = course_of(start, load, 0.0, options)
     begin = first_point(course, start.pose, 0.0)
     return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
 
 
 @check_arguments
-def branch(
+def post_buckling_path(
     model: Nonlinear,
     load: Mapping[str, float],
     *,
@@ -246,25 +246,27 @@ def branch(
     points: int = 60,
     rest: Mapping[str, float] | None = None,
     weight: float = 1.0,
-    effort: Effort = USUAL,
-) -> Path:
-    """Equilibria on the branch that leaves the path of `load` where it first buckles, along the factor on the load.
+    options: SolverOptions = USUAL,
+) -> LoadPath:
+    """Post-buckling path: equilibria on the branch that leaves the path of `load` where it first buckles, along the factor on the load.
 
     The first state is the last stable one before the bifurcation; the next goes along the motion that opens there, or, with `side` -1,
-    against it (the sign of `Critical.shape`). Steps and points are as in `trace`. Raises `DesignError` as `critical` does; where the load
-    turns instead (a limit, which `trace` passes); where a flexure gives way by itself, its ends at rest; and where no equilibrium is found
-    on the branch.
+    against it (the sign of `Critical.shape`). Steps and points are as in `continuation`. Raises `DesignError` as `critical_load`
+    does; where the load turns instead (a limit, which `continuation` passes); where a flexure buckles individually, its ends at rest; and
+    where no equilibrium is found on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = branch(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
+    >>> found = post_buckling_path(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
     >>> found.values.round(3).tolist()
     [11.063, 11.065, 11.069]
     """
-    given = critical(model, load, rest=rest, weight=weight)
+    given = critical_load(model, load, rest=rest, weight=weight)
     if given.kind is Kind.LIMIT:
-        raise refuse("load", f"at {given.factor:.6g} times the load equilibrium ends: nothing branches", "Follow the load with fs.trace")
-    return beyond(given, load, side=side, step=step, points=points, effort=effort)
+        raise refuse(
+            "load", f"at {given.factor:.6g} times the load equilibrium ends: nothing branches", "Follow the load with fs.continuation"
+        )
+    return beyond(given, load, side=side, step=step, points=points, options=options)
 
 
 def beyond(
@@ -274,18 +276,18 @@ def beyond(
     side: float = 1.0,
     step: float = 0.02,
     points: int = 60,
-    effort: Effort = USUAL,
-) -> Path:
+    options: SolverOptions = USUAL,
+) -> LoadPath:
     """Equilibria from where a load is critical, along the factor on it: on the branch that opens there, or past the limit or bend.
 
-    `given` is what `critical` found for the load; steps, points and `side` are as in `branch`; past a limit, or where the path bends, there
-    is one side only. Raises `DesignError` for the other one, where a flexure gives way by itself, its ends at rest, and where no
-    equilibrium is found.
+    `given` is what `critical_load` found for the load; steps, points and `side` are as in `post_buckling_path`; past a limit, or where the
+    path bends, there is one side only. Raises `DesignError` for the other one, where a flexure buckles individually, its ends at rest, and
+    where no equilibrium is found.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> load = {"platform.fx": -1e3}
-    >>> given = critical(nonlinear(parallelogram()), load, weight=0.0)
+    >>> given = critical_load(nonlinear(parallelogram()), load, weight=0.0)
     >>> beyond(given, load, side=-1.0, points=2).values.round(3).tolist()
     [11.063, 11.065, 11.069]
     """
@@ -294,7 +296,7 @@ def beyond(
         raise refuse("side", f"{what} the path goes on to one side: a {given.kind.value}", "Follow that one")
     if given.link and given.kind is Kind.BIFURCATION:
         raise refuse(given.link, f"{what} it gives way between its ends, which rest", "Draw it as two parts with a light body between them")
-    course, into = course_of(start, load, given.factor, effort), None
+    course, into = course_of(start, load, given.factor, options), None
     if given.kind is Kind.BIFURCATION:
         others = np.zeros(len(course.scale) - start.model.freedoms)
         into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
@@ -305,7 +307,7 @@ def beyond(
     return _along(course, found, start.held)
 
 
-def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> Path:
+def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> LoadPath:
     factors, count = np.array([each.factor for each in found]), len(found)
     loads, hold = course.at(0.0)
     inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(course.gain, name) for name in ("inputs", "gravity"))
@@ -313,7 +315,7 @@ def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> Path:
     whole = join([each.found for each in found])
     states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
     motions = np.array([each.motions for each in found])
-    return Path("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(found)]))
+    return LoadPath("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(found)]))
 
 
 def _turn(one: Point, other: Point) -> float:

@@ -1,10 +1,10 @@
-"""What a virtual rig records of its inputs."""
+"""Inputs of a virtual rig: the recorded quantity, and the signal it is taken from."""
 
 from enum import Enum
 
 
-class Recorded(Enum):
-    """What the recorded inputs are numbers of."""
+class InputQuantity(Enum):
+    """Physical quantity of the recorded inputs."""
 
     STROKE = "stroke"
     """Free stroke in um."""
@@ -12,8 +12,8 @@ class Recorded(Enum):
     """Voltage in V, counted from the bias."""
 
 
-class Tap(Enum):
-    """Where the recorded inputs are taken from."""
+class InputSignal(Enum):
+    """Signal that the recorded inputs are taken from."""
 
     MONITOR = "monitor"
     """Behind the amplifier and through the same filter as the gauges: amplifier and filter cancel in the frequency response."""

@@ -1,4 +1,4 @@
-"""Caveats: what does not keep a stage from being read, but should be known with its results: cautions, and what was taken by default."""
+"""Caveats: what does not keep a stage from being read, but should be known with its results: warnings, and what was taken by default."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ from flexstage.mechanism.grammar.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.contact import Contact
-from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted, material_of
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.plausible import implausible
@@ -62,9 +62,9 @@ _MEASURED = frozenset({"rig", "identify", "compare", "update"})
 
 @dataclass(frozen=True)
 class Caveats:
-    """Known with every result: `cautions` (something is doubtful), and `defaults` (what the description leaves open, as taken)."""
+    """Known with every result: `warnings` (something is doubtful), and `defaults` (what the description leaves open, as taken)."""
 
-    cautions: tuple[Finding, ...] = ()
+    warnings: tuple[Finding, ...] = ()
     defaults: tuple[Default, ...] = ()
 
     def defaults_of(self, kind: str) -> tuple[Default, ...]:
@@ -74,13 +74,13 @@ class Caveats:
 
 @lru_cache(maxsize=8)
 def caveats(mechanism: Mechanism) -> Caveats:
-    """Cautions and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
+    """Warnings and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> caveats(double_triangle()).cautions
+    >>> caveats(double_triangle()).warnings
     ()
     """
-    return Caveats(cautions(mechanism), defaults(mechanism))
+    return Caveats(design_warnings(mechanism), defaults(mechanism))
 
 
 def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
@@ -146,7 +146,9 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
         holder = mechanism.materials[material] if material else inner
         if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
             where = f"materials.{material}" if material else f"parts.{link.link.part}"
-            told[where] = "State the drawn part that it replaces" if isinstance(inner, Given) else "State it: loss_factor = 0.002"
+            told[where] = (
+                "State the drawn part that it replaces" if isinstance(inner, ComplianceMatrix) else "State it: loss_factor = 0.002"
+            )
     for item in expand(mechanism).superelements.values():
         if item.part.loss_factor is None:
             told[f"parts.{item.link.part}"] = "State it: loss_factor = 0.002"
@@ -176,24 +178,24 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 
 @one_thread
-def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
+def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """What is doubtful: the loaded stage, parts beyond beam theory's range, blocked strokes, outlines that clash or leave their room.
 
     A part that departs from the shared one is told by its link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> cautions(double_triangle())
+    >>> design_warnings(double_triangle())
     ()
     """
     factors = load_factors(mechanism)
     return (
-        *(() if factors is None else (*factors.refusals, *factors.cautions)),
+        *(() if factors is None else (*factors.refusals, *factors.warnings)),
         *_tension_findings(mechanism),
         *implausible(_catalogue_items(mechanism)),
         *_disproportions(mechanism),
         *_overload_findings(mechanism),
         *_points(mechanism),
-        *part_cautions(mechanism),
+        *part_warnings(mechanism),
         *_blockages(mechanism),
         *_large_motions(mechanism),
         *contact_findings(mechanism),
@@ -209,7 +211,7 @@ def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
         single = single_strokes(mechanism, found)
     except DesignError:
         return ()
-    return tuple(small_motion(mechanism, found).cautions(single))
+    return tuple(small_motion(mechanism, found).warnings(single))
 
 
 def _catalogue_items(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
@@ -353,11 +355,11 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     return tuple(dict.fromkeys([*found, *path_findings(mechanism)]))
 
 
-def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
+def part_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Parts outside the range that beam theory was compared with, or not straight when free.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> part_cautions(double_triangle())
+    >>> part_warnings(double_triangle())
     ()
     """
     return (*(finding for each in validity(mechanism).values() for finding in each.findings), *_not_straight(mechanism))

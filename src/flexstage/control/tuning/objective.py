@@ -1,12 +1,12 @@
-"""What a search for a controller is after. Light: the command line names the choices without loading more."""
+"""Objectives of optimisation-based tuning. Light: the command line names the choices without loading more."""
 
 from __future__ import annotations
 
 from enum import Enum
 
 
-class Aim(Enum):
-    """What a controller shall be best at, within the margins that are asked for."""
+class TuningObjective(Enum):
+    """Objective of optimisation-based tuning, within the required margins."""
 
     BALANCE = "balance"
     """Rejection and settling together, and with what is left of freedom noise."""

@@ -23,7 +23,7 @@ from flexstage.spatial.frame import rigid_inertia
 
 
 class Origin(Enum):
-    """Where a given matrix comes from."""
+    """Origin of a compliance matrix."""
 
     STATED = "stated"
     MEASURED = "measured"
@@ -31,8 +31,8 @@ class Origin(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Given(Elastic):
-    """A part known by its 6x6 compliance about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
+class ComplianceMatrix(Elastic):
+    """Part known by its 6x6 compliance matrix about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
 
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
     `replaces` names the drawn part that the matrix was computed from, so that the solid model knows the shape,
@@ -56,7 +56,7 @@ class Given(Elastic):
         return self.free
 
     @property
-    def mirrored(self) -> Given:
+    def mirrored(self) -> ComplianceMatrix:
         """Its compliance with the entries reversed that tell a motion along y, or a rotation about x or z, with another one."""
         inertia = None if self.inertia is None else replace(self.inertia, xy=-self.inertia.xy, yz=-self.inertia.yz)
         centre = None if self.centre is None else (self.centre[0], -self.centre[1], self.centre[2])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.loaded.stance import coordinate, stance
+from flexstage.analysis.loaded.operating_point import coordinate, operating_point
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
@@ -30,7 +30,7 @@ def compliance(model: LinearModel) -> np.ndarray:
 def test_a_lock_takes_its_coordinate_out_of_the_free_compliance(locked: str):
     """C - c c^T / c_ll, c the locked coordinate's column: the Schur complement, where the lock does not itself press."""
     stage = guide(gravity=DOWN)
-    free = compliance(stance(stage, {"platform.y": 8e-3}).linear)
+    free = compliance(operating_point(stage, {"platform.y": 8e-3}).linear)
     state = fs.equilibrium(fs.nonlinear(stage), hold={"platform.y": 8e-3})
     held = {"platform.y": 8e-3, locked: float(coordinate(state, locked))}
     found = compliance(fs.linearise(fs.equilibrium(fs.nonlinear(stage), hold=held), locked=[locked]))
@@ -45,10 +45,10 @@ def test_a_lock_takes_its_coordinate_out_of_the_free_compliance(locked: str):
 def test_the_force_that_brings_a_stage_somewhere_keeps_it_there():
     """Loaded by what was found, it comes to the same place, with the same modes."""
     stage = guide(gravity=DOWN)
-    found = stance(stage, {"platform.y": 8e-3})
+    found = operating_point(stage, {"platform.y": 8e-3})
     assert found.held is not None
     force = found.held.at("platform.y", "force")
-    again = stance(stage, loads={"platform.fy": force})
+    again = operating_point(stage, loads={"platform.fy": force})
     assert again.sag.at("platform", "y") == pytest.approx(8e-3, rel=1e-9)
     assert fs.modes(again.linear).frequencies[:6] == pytest.approx(fs.modes(found.linear).frequencies[:6], rel=1e-8)
 
@@ -74,8 +74,8 @@ def test_what_is_released_moves_as_two_more_equilibria_say(held: str):
 
 def test_the_frame_does_not_matter():
     turn = exponential(np.array([0.0, 0.0, 0.5 * np.pi]))
-    here = stance(guide(gravity=DOWN), {"platform.y": 8e-3}, loads={"platform.fx": -10.0})
-    there = stance(guide(turn, gravity=tuple(turn @ DOWN)), {"platform.x": -8e-3}, loads={"platform.fy": -10.0})
+    here = operating_point(guide(gravity=DOWN), {"platform.y": 8e-3}, loads={"platform.fx": -10.0})
+    there = operating_point(guide(turn, gravity=tuple(turn @ DOWN)), {"platform.x": -8e-3}, loads={"platform.fy": -10.0})
     assert spatial_rotation(turn).T @ compliance(there.linear) @ spatial_rotation(turn) == pytest.approx(compliance(here.linear), abs=1e-9)
     assert fs.modes(there.linear).frequencies[:6] == pytest.approx(fs.modes(here.linear).frequencies[:6], rel=1e-8)
 
@@ -84,8 +84,8 @@ def test_small_loads_add_up_as_in_the_lumped_model():
     """Sags under two small loads, and under both, against K^-1 f; leaves differ by the shear of their clamps."""
     stage = replace(parallelogram(), gravity=(0.0, 0.0, 0.0))
     loads = {"platform.fx": 0.01, "platform.fz": -0.01}
-    both = stance(stage, loads=loads).sag.values[0]
-    single = sum((stance(stage, loads={name: value}).sag.values[0] for name, value in loads.items()), np.zeros(6))
+    both = operating_point(stage, loads=loads).sag.values[0]
+    single = sum((operating_point(stage, loads={name: value}).sag.values[0] for name, value in loads.items()), np.zeros(6))
     small = static_gain(fs.lumped(stage), TWIST, tuple(loads)).values @ list(loads.values())
     assert both == pytest.approx(single, rel=1e-5, abs=1e-6 * np.max(np.abs(both)))
     assert both == pytest.approx(small, rel=3e-3, abs=3e-3 * np.max(np.abs(small)))
@@ -93,7 +93,7 @@ def test_small_loads_add_up_as_in_the_lumped_model():
 
 def test_strokes_stay_and_places_count_from_the_sagged_one():
     stage = parallelogram()
-    found = stance(stage, {"B": 1e-5}, loads={"platform.fx": 50.0})
+    found = operating_point(stage, {"B": 1e-5}, loads={"platform.fx": 50.0})
     assert found.held is None
     assert found.sag.at("platform", "x") == pytest.approx(
         float(fs.equilibrium(fs.nonlinear(stage), {"platform.fx": 50.0}).displacement()[0])
@@ -107,7 +107,7 @@ def test_a_warm_stage_sags_as_it_drifts():
     warm = replace(stage, materials={name: replace(each, expansion=12e-6) for name, each in stage.materials.items()}, gravity=(0, 0, 0))
     parts = {name: replace(part, expansion=2e-6) if isinstance(part, fs.Piezo) else part for name, part in warm.parts.items()}
     warm = replace(warm, parts=parts)
-    found = stance(warm, temperature=0.1).sag.at("platform", "x")
+    found = operating_point(warm, temperature=0.1).sag.at("platform", "x")
     assert found == pytest.approx(0.1 * float(fs.drift(warm, fs.lumped(warm)).motion.at("platform.x", "uniform")), rel=1e-2)
 
 
@@ -124,18 +124,18 @@ def test_a_warm_stage_sags_as_it_drifts():
 )
 def test_what_cannot_be_is_refused_with_its_reason(asked: dict[str, Any], said: str):
     with pytest.raises(fs.DesignError, match=said):
-        stance(guide(), **asked)
+        operating_point(guide(), **asked)
 
 
 def test_drives_that_do_nothing_are_told():
     stage = parallelogram()
-    assert [each.where for each in stance(stage, loads={"platform.fy": 0.0}).cautions] == ["platform.fy"]
+    assert [each.where for each in operating_point(stage, loads={"platform.fy": 0.0}).warnings] == ["platform.fy"]
 
 
 def test_a_traced_load_keeps_what_is_held():
     """A guide whose platform cannot turn, pushed by a force as traced, is the one that holds it there finds."""
     model, held = fs.nonlinear(guide()), {"platform.rz": 1e-4}
-    found = fs.trace(model, {"platform.fy": 1.0}, hold=held, step=0.02, points=4, weight=0.0)
+    found = fs.continuation(model, {"platform.fy": 1.0}, hold=held, step=0.02, points=4, weight=0.0)
     assert found.locked == ("platform.rz",)
     assert found.state.rotation()[:, 2] == pytest.approx(1e-4, rel=1e-9)
     again = fs.equilibrium(model, {"platform.fy": found.values}, hold=held, weight=0.0)

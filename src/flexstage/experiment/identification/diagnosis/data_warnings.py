@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.diagnosis.adequacy import Reach, coarse_lines, no_mode_caution, unsearched_band
+from flexstage.experiment.identification.diagnosis.adequacy import Reach, coarse_lines, no_mode_warning, unsearched_band
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.records.record import Channel
 from flexstage.experiment.records.unit import same_dimension, unit_problem
@@ -31,17 +31,17 @@ def _is_motion(channel: Channel) -> bool:
     return bool(channel.unit) and unit_problem(channel.unit) is None and any(same_dimension(channel.unit, unit) for unit in _MOTIONS)
 
 
-def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
-    """Cautions about modes found: few or coarse lines, none found, repeated ones that few channels cannot show, forces from elsewhere.
+def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
+    """Warnings about modes found: few or coarse lines, none found, repeated ones that few channels cannot show, forces from elsewhere.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record
     >>> one = Modes(np.array([POLE]), (), np.zeros(1), np.ones(1))
-    >>> warnings(evidence(one_mode_record(), None), one, Reach(1.0, 26.0))[0][:20]
+    >>> data_warnings(evidence(one_mode_record(), None), one, Reach(1.0, 26.0))[0][:20]
     'only u was driven: o'
     """
     poles, close = modes.poles, modes.close
-    limits = (unsearched_band(known, reach), coarse_lines(known, poles), None if len(poles) else no_mode_caution(known, reach))
+    limits = (unsearched_band(known, reach), coarse_lines(known, poles), None if len(poles) else no_mode_warning(known, reach))
     found = [each for each in limits if each is not None]
     outputs, inputs = known.responses.values.shape[1:]
     listed = ", ".join(f"{abs(pole):.4g}" for pole in poles[:8]) + (" ..." if len(poles) > 8 else "")

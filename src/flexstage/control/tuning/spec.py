@@ -1,4 +1,4 @@
-"""What a loop shall reach, and what tuning found."""
+"""Tuning specification, and the result of a tuning."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True)
-class Goal(CheckedFields):
-    """What is wanted: `bandwidth` [Hz], where every loop's gain first passes 1; absent: the highest that the rest allows.
+class TuningSpec(CheckedFields):
+    """Specification of a tuning: `bandwidth` [Hz], where every loop's gain first passes 1; absent: the highest that the rest allows.
 
     `sensitivity` is the highest peak of S allowed (poses as lengths): 2 = 6 dB leaves gain margins of 2 and phase margins of 29 deg
     (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). `spread` is how much all modes may lie above or below the
@@ -39,22 +39,22 @@ class Goal(CheckedFields):
     spread: float = 0.02
 
 
-def goal_findings(goal: Goal, step: float | None) -> Iterator[Finding]:
-    """What is wrong with a goal for a loop sampled every `step` [s].
+def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
+    """List the errors of a specification for a loop sampled every `step` [s].
 
-    >>> [str(each) for each in goal_findings(Goal(6000.0), 1e-4)]
+    >>> [str(each) for each in spec_findings(TuningSpec(6000.0), 1e-4)]
     ['bandwidth: 6000 Hz is not below half the sampling rate, 5000 Hz. Sample above 60000 Hz, or ask for less.']
     """
-    if goal.bandwidth is not None and not 0.0 < goal.bandwidth < np.inf:
-        yield Finding("bandwidth", f"it is {goal.bandwidth:g} Hz", "Give a positive frequency")
-    elif goal.bandwidth is not None and step is not None and goal.bandwidth >= 0.5 / step:
-        what = f"{goal.bandwidth:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
-        yield Finding("bandwidth", what, f"Sample above {10.0 * goal.bandwidth:g} Hz, or ask for less")
-    if not 1.0 < goal.sensitivity < np.inf:
+    if spec.bandwidth is not None and not 0.0 < spec.bandwidth < np.inf:
+        yield Finding("bandwidth", f"it is {spec.bandwidth:g} Hz", "Give a positive frequency")
+    elif spec.bandwidth is not None and step is not None and spec.bandwidth >= 0.5 / step:
+        what = f"{spec.bandwidth:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
+        yield Finding("bandwidth", what, f"Sample above {10.0 * spec.bandwidth:g} Hz, or ask for less")
+    if not 1.0 < spec.sensitivity < np.inf:
         advice = "Give more, for example 2 (6 dB): no loop with a delay stays at 1"
-        yield Finding("sensitivity", f"the highest peak of S allowed is {goal.sensitivity:g}, and it has to be above 1", advice)
-    if not 0.0 <= goal.spread < 0.5:
-        yield Finding("spread", f"modes are to be off by up to {goal.spread:g}", "Give a ratio from 0 to 0.5, for example 0.02")
+        yield Finding("sensitivity", f"the highest peak of S allowed is {spec.sensitivity:g}, and it has to be above 1", advice)
+    if not 0.0 <= spec.spread < 0.5:
+        yield Finding("spread", f"modes are to be off by up to {spec.spread:g}", "Give a ratio from 0 to 0.5, for example 0.02")
 
 
 @dataclass(frozen=True)
@@ -84,10 +84,10 @@ class Judgement:
 
 @dataclass(frozen=True, eq=False)
 class Tuning:
-    """A tuned controller: its `kind`, the `goal`, how the loop came out, and the `notches` of each loop; `reason` says it in words."""
+    """A tuned controller: its `kind`, the `spec`, its `judgement`, and the `notches` of each loop; `reason` is the sentence."""
 
     kind: Kind | Family
-    goal: Goal
+    spec: TuningSpec
     controller: Decentralised | LQG
     judgement: Judgement
     notches: tuple[tuple[Notch, ...], ...]

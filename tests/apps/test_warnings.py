@@ -1,4 +1,4 @@
-"""Cautions and defaults: told by every command on a design, in tables, documents and reports; they stop nothing."""
+"""Warnings and defaults: told by every command on a design, in tables, documents and reports; they stop nothing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.cautions import caveats, defaults
+from flexstage.analysis.caveats import caveats, defaults
 from flexstage.analysis.loaded.standing import standing
 from flexstage.apps.cli.commands import COMMANDS
 from flexstage.cases.double_triangle import double_triangle
@@ -28,39 +28,39 @@ THICK = ("--set", "parts.foot_notch.profile.radius=0.9 mm")
 @pytest.mark.parametrize(
     "command", ["check", "analyse", "mapping", "stiffness", "lost-motion", "modes", "response", "workspace", "drift", "budget"]
 )
-def test_every_command_tells_cautions_in_its_document_and_its_tables(flexstage: Command, tmp_path: Path, command: str) -> None:
+def test_every_command_tells_warnings_in_its_document_and_its_tables(flexstage: Command, tmp_path: Path, command: str) -> None:
     ended = flexstage(command, "stage.toml", *THICK, "--json", "out.json")
     assert ended.code == 0, ended.err
     document = json.loads((tmp_path / "out.json").read_text())
-    (caution,) = (each for each in document["cautions"] if each["where"] == "parts.foot_notch")
-    assert set(caution) == {"where", "what", "advice"}
-    assert ended.out.index("Cautions") < ended.out.index(caution["what"])
+    (warning,) = (each for each in document["warnings"] if each["where"] == "parts.foot_notch")
+    assert set(warning) == {"where", "what", "advice"}
+    assert ended.out.index("Warnings") < ended.out.index(warning["what"])
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_cautions_follow_the_verdicts(flexstage: Command, tmp_path: Path) -> None:
+def test_warnings_follow_the_verdicts(flexstage: Command, tmp_path: Path) -> None:
     design_in(tmp_path, "parallelogram")
     beyond = ("--set", "envelope.x=1 mm")
     ended = flexstage("analyse", "stage.toml", *beyond, "--report", "out.html", "--json", "out.json")
     assert "122 mm wide, the envelope 1 mm" in told_everywhere(ended, tmp_path / "out.json", tmp_path / "out.html")
     whole = flexstage("analyse", "stage.toml", *beyond, "--full").out
-    assert whole.index("Requirements") < whole.index("Cautions") < whole.index("Mobility")
+    assert whole.index("Requirements") < whole.index("Warnings") < whole.index("Mobility")
     page = (tmp_path / "out.html").read_text(encoding="utf-8")
-    assert page.index("<h2>Requirements</h2>") < page.index("<h2>Cautions</h2>") < page.index("<h2>Summary</h2>")
+    assert page.index("<h2>Requirements</h2>") < page.index("<h2>Warnings</h2>") < page.index("<h2>Summary</h2>")
 
 
-def test_a_check_with_cautions_succeeds(flexstage: Command) -> None:
+def test_a_check_with_warnings_succeeds(flexstage: Command) -> None:
     ended = flexstage("check", "stage.toml", *THICK)
     assert ended.code == 0
     assert "no findings, " in ended.out
-    assert " cautions." in ended.out
+    assert " warnings." in ended.out
 
 
 def test_what_is_taken_by_default_stands_apart(flexstage: Command, tmp_path: Path) -> None:
     massless = ("--set", "parts.stack_vertical.mass=0 kg")
     ended = flexstage("modes", "stage.toml", *massless, "--json", "out.json")
     document = json.loads((tmp_path / "out.json").read_text())
-    assert document["cautions"] == []
+    assert document["warnings"] == []
     assert [each["what"] for each in document["defaults"]] == ["the stack weighs nothing"]
     assert ended.out.startswith("Taken by default\n\n  parts.stack_vertical: the stack weighs nothing. ")
     assert "Taken by default" not in flexstage("mapping", "stage.toml", *massless).out, "mappings weigh nothing"
@@ -76,7 +76,7 @@ def test_the_mass_of_a_restricted_part_is_named() -> None:
 
 def test_caveats_are_lines_that_nothing_folds(flexstage: Command) -> None:
     lines = flexstage("modes", "stage.toml", *THICK).out.splitlines()
-    assert lines[:2] == ["Cautions", ""]
+    assert lines[:2] == ["Warnings", ""]
     assert lines[2].startswith("  parts.foot_notch: ")
     assert all(line.startswith("  ") and line.endswith(".") for line in lines[2 : lines.index("", 2)])
 
@@ -132,9 +132,9 @@ def test_verdicts_are_of_the_stage_under_its_weight(flexstage: Command, tmp_path
     assert frequency["value"] == pytest.approx(2.2657, rel=2e-3), "beam-column, rigid in shear"
     assert buckling["value"] == pytest.approx(2.01, rel=5e-3)
     assert document["buckling"]["stage"]["dead"] == pytest.approx(buckling["value"], rel=1e-12)
-    assert "load factor 2.01" in document["cautions"][0]["what"]
+    assert "load factor 2.01" in document["warnings"][0]["what"]
     leaves(tmp_path, 0.1)
-    assert flexstage("modes", "stage.toml", "--json", "-").document["cautions"] == []
+    assert flexstage("modes", "stage.toml", "--json", "-").document["warnings"] == []
 
 
 STUDY = """format = "flexstage study 1"
@@ -185,7 +185,7 @@ def reported(flexstage: Command, tmp_path: Path) -> Command:
     ("words", "expected"),
     [pytest.param(*each, marks=pytest.mark.full if each[0].split()[0] in AT_LENGTH else ()) for each in REPORTED.items()],
 )
-def test_every_report_tells_the_cautions_of_the_document(reported: Command, tmp_path: Path, words: str, expected: str) -> None:
+def test_every_report_tells_the_warnings_of_the_document(reported: Command, tmp_path: Path, words: str, expected: str) -> None:
     if "record" in words:
         assert reported(*["rig", "stage.toml", "--seconds", "2", "--model", "mapped", "-o", "record.uff"]).code == 0
     if "stack" in words:
@@ -242,11 +242,11 @@ def test_a_mass_without_extent_is_told_unless_it_is_meant(flexstage: Command, tm
     text = sound.replace(inertia, "") + load.format("")
     (tmp_path / "stage.toml").write_text(text)
     told = flexstage("modes", "stage.toml", "--set", "parts.leaf.thickness=3 mm", "--json", "-").document
-    assert [each["where"] for each in told["cautions"]] == ["bodies.platform", "payloads.mirror"]
-    assert all("count as a point" in each["what"] for each in told["cautions"])
+    assert [each["where"] for each in told["warnings"]] == ["bodies.platform", "payloads.mirror"]
+    assert all("count as a point" in each["what"] for each in told["warnings"])
     assert min(told["modes"][place]["compliance_share"] for place in told["platform"]) > 0.01
     (tmp_path / "stage.toml").write_text(sound.replace(inertia, "point = true") + load.format(", point = true"))
-    assert flexstage("check", "stage.toml", "--json", "-").document["cautions"] == []
+    assert flexstage("check", "stage.toml", "--json", "-").document["warnings"] == []
     (tmp_path / "stage.toml").write_text(sound.replace(inertia, f"{inertia}\npoint = true"))
     ended = flexstage("check", "stage.toml")
     assert ended.code == 2
