@@ -56,10 +56,8 @@ class Leaf(Shaped):
     @property
     def mirrored(self) -> Leaf:
         """The leaf with its blank bent, and warm, on the other side."""
-        if not self.is_bent:
-            return self
         warmer = reversed_or_none(self.face_temperature_difference)
-        return replace(self, curvature=reversed_or_none(self.curvature), face_temperature_difference=warmer)
+        return replace(self, curvature=reversed_or_none(self.curvature), face_temperature_difference=warmer) if self.is_bent else self
 
     @property
     def is_bent(self) -> bool:

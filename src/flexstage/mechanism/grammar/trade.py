@@ -144,7 +144,7 @@ def advise_key(key: str, unused: Collection[str], known: Collection[str]) -> str
     >>> advise_key("E", {"young", "density"}, {"young", "density"}), advise_key("thicknes", {"section"}, {"section", "thickness"})
     ('It is called young here', 'The nearest name is thickness')
     """
-    meant = [name for name, words in _KEYS.items() if name in known and key in words] or [*filter(None, [new_name(key, known)])]
+    meant = [name for name in known if key in _KEYS.get(name, ()) or name == new_name(key, known)]
     if meant:
         return f"It is called {' or '.join(meant)} here"
     advice = [suggest_nearest(key, names) for names in (unused, known) if names]

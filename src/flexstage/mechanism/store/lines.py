@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import chain
 
 from flexstage.base.finding import Finding
 
@@ -56,9 +55,8 @@ def line_of(address: str, lines: Mapping[str, int]) -> int | None:
     >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "placements.B1": 9}), line_of("gravity", {})
     (4, None)
     """
-    plain = address.replace('"', "")
-    around = (lines[table] for each in _ways(plain, lines) for table in _tables(each) if table != "tags" and table in lines)
-    return next(chain(around, (line for each, line in lines.items() if each.startswith(f"{plain}."))), None)
+    around = (table for each in _ways(address.replace('"', ""), lines) for table in _tables(each) if table != "tags")
+    return next((lines[table] for table in around if table in lines), None)
 
 
 def _tables(address: str) -> Iterator[str]:
@@ -74,6 +72,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
     if found is None:
         yield from (address, address.removeprefix("tags."))
         yield from (f"{kind}.{address}" for kind in ("bodies", "links") if f"{kind}.{address.partition('.')[0]}" in lines)
+        yield from (each for each in lines if each.startswith(f"{address}."))
         return
     owner, name, rest = found["owner"], found["name"], found["rest"]
     link = f".links.{name}"
