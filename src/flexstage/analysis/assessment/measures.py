@@ -49,6 +49,7 @@ from flexstage.spatial.frame import COMPONENTS, transport
 if TYPE_CHECKING:
     from flexstage.analysis.loaded import load_cases as cases
     from flexstage.models.nonlinear import state
+    from flexstage.models.nonlinear.paths import critical_load
 else:
     cases = Late("flexstage.analysis.loaded.load_cases")
     critical_load = Late("flexstage.models.nonlinear.paths.critical_load")

@@ -26,6 +26,7 @@ from flexstage.spatial.frame import COMPONENTS
 if TYPE_CHECKING:
     from flexstage.models.nonlinear import equilibrium, linearise
     from flexstage.models.nonlinear import stage as nonlinear
+    from flexstage.models.nonlinear.paths import critical_load
 else:
     critical_load = Late("flexstage.models.nonlinear.paths.critical_load")
     equilibrium = Late("flexstage.models.nonlinear.equilibrium")
