@@ -12,7 +12,7 @@ class File(Enum):
     HYSTERESIS = "hysteresis"
 
 
-class Branch(Enum):
+class BranchSide(Enum):
     """The two post-buckling branches: along the buckling mode, or against it."""
 
     ALONG = "along"

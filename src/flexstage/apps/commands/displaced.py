@@ -17,7 +17,7 @@ from flexstage.analysis.loaded.misalign import misalignments
 from flexstage.analysis.loaded.operating_point import require_consistent
 from flexstage.analysis.loaded.stroke import Beyond
 from flexstage.analysis.loaded.stroke import stroke as over_stroke
-from flexstage.apps.words import Branch
+from flexstage.apps.words import BranchSide
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.units.quantity import ANGLE, LENGTH, RATIO, Quantity
@@ -171,7 +171,7 @@ def buckle(  # noqa: PLR0913 (its options)
     post_buckling: Annotated[
         int, typer.Option("--post-buckling", metavar="N", min=0, help="Number of equilibria beyond the lowest critical load.")
     ] = 0,
-    branch: Annotated[Branch, typer.Option("--branch", help="Branch: along the buckling mode, or against it.")] = Branch.ALONG,
+    branch: Annotated[BranchSide, typer.Option("--branch", help="Branch: along the buckling mode, or against it.")] = BranchSide.ALONG,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
@@ -207,7 +207,7 @@ def buckle(  # noqa: PLR0913 (its options)
     )
 
 
-def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: Branch, points: int) -> Beyond:
+def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, points: int) -> Beyond:
     """From where the least case gives way on; refused where that needs something held."""
     least = found.least
     if least is None or least.found is None:
@@ -216,7 +216,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: Branch, point
         what = f"the least factor is that of {least.load} at {least.place}, where force holds the stage"
         raise refuse("--post-buckling", what, "Leave out --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
-    path = follow(least.found, grows, side=1.0 if branch is Branch.ALONG else -1.0, points=points)
+    path = follow(least.found, grows, side=1.0 if branch is BranchSide.ALONG else -1.0, points=points)
     return Beyond(path, over_stroke(path))
 
 
