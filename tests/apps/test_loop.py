@@ -332,7 +332,7 @@ def test_a_key_by_its_old_name_is_refused_with_the_new_one(guide: Command, tmp_p
     (tmp_path / "loop.toml").write_text(f'format = "{FORMAT}"\nreading = "mapped"\n')
     ended = guide("loop", "stage.toml", "--setup", "loop.toml")
     assert (ended.code, ended.out) == (2, "")
-    assert "loop.toml: line 2: reading: this key is not known here. It is called model." in ended.err
+    assert "loop.toml: line 2: reading: this key is not known here. It is called model here." in ended.err
 
 
 def test_an_unstable_loop_is_refused_with_what_makes_it_so(guide: Command, tmp_path: Path) -> None:

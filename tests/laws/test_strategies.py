@@ -63,6 +63,6 @@ def test_all_kinds_are_drawn():
     """Two closed loops, six bodies, eight strokes, and every number of freedoms are within reach."""
     assert find(mechanisms(), lambda drawn: len(drawn.links) == len(drawn.bodies) + 2, settings=SEARCH)
     assert find(mechanisms(), lambda drawn: len(drawn.bodies) >= 6, settings=SEARCH)
-    assert find(platforms(), lambda drawn: len(drawn[0].place) == 8, settings=SEARCH)
+    assert find(platforms(), lambda drawn: len(drawn[0].placements) == 8, settings=SEARCH)
     for wires in range(6):
         assert find(platforms(), lambda drawn, wires=wires: len(drawn[0].links) == wires, settings=SEARCH)
