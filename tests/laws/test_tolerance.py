@@ -343,6 +343,7 @@ BAD = {
     'w = { of = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
     'w = { of = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
     'w = { of = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard deviations)",
+    'w = { of = "leaf.thickness", normal = "1e308 m" }': "deviations reach inf mm (5 standard deviations)",
     'w = { of = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and is to be greater than 0",
     'v = { of = "leaf.thickness", uniform = "60 %" }\nw = { of = "hinges.thickness", uniform = "60 %" }': "deviations reach 0.6 mm: it",
     'w = { of = "leaf.thickness" }': "it is not said how far it deviates",
