@@ -7,6 +7,7 @@ import re
 
 import pytest
 
+from tools.validation import laws
 from tools.validation.page import DOCS, chapters, summary, unexpected
 from tools.validation.row import Row, Tolerance, Verdict, beam_error, relative
 
@@ -71,3 +72,9 @@ def _first_difference(old, new):
 )
 def test_verdicts(row, verdict):
     assert row.verdict is verdict
+
+
+def test_laws_are_listed_with_the_examples_that_they_are_tried_on():
+    listed = "\n".join(section.markdown() for section in laws.sections())
+    assert "whatever the idle ones weigh. | 12 (`make check-all`: 400) |" in listed
+    assert "elimination orders any graph | 30 (`make check-all`: 1000) |" in listed

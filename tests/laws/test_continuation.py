@@ -181,6 +181,15 @@ def test_no_equilibrium_beyond_a_snap_is_taken_for_the_deflection_under_a_load()
         fs.operating_point(stage, loads={DOWN: 1.5 * limit})
 
 
+def test_just_below_its_critical_value_a_load_has_the_stable_equilibrium_of_its_path():
+    """At 0.99 of it Newton's method goes from the drawn position to another equilibrium, which is not stable."""
+    model = nonlinear(random_legs(17))
+    (load,) = factors(model, np.array([1.0]))
+    found, before = (equilibrium(model, {DOWN: share * load}, weight=0.0) for share in (0.99, 0.98))
+    assert not unstable_motions(found)
+    assert found.twist() == pytest.approx(equilibrium(model, {DOWN: 0.99 * load}, weight=0.0, start=before).twist(), rel=1e-8, abs=1e-12)
+
+
 def test_a_trace_with_long_steps_has_the_events_of_one_with_short_steps():
     """A dome through its snap: a limit point, and another one where it takes load again; nothing else."""
     model, load = nonlinear(random_legs(2)), {DOWN: -1.0}

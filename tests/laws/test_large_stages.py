@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from flexstage.analysis.dynamics.modes import modes
 from flexstage.analysis.linear_statics.drift import drift
@@ -33,7 +33,7 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular
 from flexstage.parts.rod import Rod
 from flexstage.spatial.frame import COMPONENTS, Frame, axes, twist_transform
-from tests.conftest import FULL
+from tests.conftest import FULL, examples
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import mechanisms
 from tests.laws.test_mechanisms import METRE, platform_compliance, rounding
@@ -41,7 +41,6 @@ from tests.laws.test_mechanisms import METRE, platform_compliance, rounding
 STEEL = Material(young=200e9, poisson=0.3, density=7800.0, expansion=1.1e-5)
 STEP = 0.03
 NO_STROKES = StrokeLimits((), np.zeros(0), np.zeros(0))
-EXAMPLES = 1000 if FULL else 12
 
 
 def sparse_lumped(stage):
@@ -54,7 +53,7 @@ def comparable(matrix):
     return matrix * METRE[:, None] * METRE
 
 
-@settings(max_examples=EXAMPLES)
+@examples(12, 1000)
 @given(mechanisms())
 def test_stages_without_zeros_have_the_same_statics_and_modes(stage):
     dense, sparse = lumped(stage), sparse_lumped(stage)
@@ -70,7 +69,7 @@ def test_stages_without_zeros_have_the_same_statics_and_modes(stage):
     np.testing.assert_allclose(lowest, every, rtol=1e-9 + 2.0 * rounding(dense))
 
 
-@settings(max_examples=EXAMPLES)
+@examples(12, 1000)
 @given(mechanisms())
 def test_stages_eliminated_body_by_body_have_the_same_ideal_motions(stage):
     try:
@@ -90,7 +89,7 @@ def test_stages_eliminated_body_by_body_have_the_same_ideal_motions(stage):
         assert np.max(np.abs(one - other), initial=0.0) <= 1e-9 * np.max(np.abs(other), initial=1.0)
 
 
-@settings(max_examples=EXAMPLES)
+@examples(12, 1000)
 @given(mechanisms())
 def test_load_factors_of_many_freedoms_are_those_of_few(stage):
     try:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.analysis.assessment.judge import measure_all
@@ -18,7 +18,7 @@ from flexstage.studies.sweeps.execution.engine import Engine, engine_of
 from flexstage.studies.sweeps.execution.evaluate import piece
 from flexstage.studies.sweeps.plan import Plan, Sampling
 from flexstage.studies.sweeps.variable import Variable, apply
-from tests.conftest import FULL
+from tests.conftest import examples
 
 STAGE = double_triangle()
 MOVED = (
@@ -42,7 +42,7 @@ def study(moved, *, designs=8, seed=0, stage=STAGE, keys=("frequency.platform.1"
     return Study("law", stage, variables, asked, (), Plan(Sampling.MONTE_CARLO, len(moved), count=designs, seed=seed))
 
 
-@settings(max_examples=20 if FULL else 3)
+@examples(3, 20)
 @given(st.lists(st.sampled_from(MOVED), min_size=1, max_size=4, unique=True), st.integers(0, 99))
 def test_frequencies_are_those_of_dense_matrices(moved, seed):
     asked = study(moved, seed=seed)

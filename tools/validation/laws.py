@@ -55,7 +55,8 @@ def _examples(test: ast.FunctionDef, named: Mapping[str, ast.expr]) -> str:
         return ""
     decorator = calls.get("settings")
     own = next((word.value for word in decorator.keywords if word.arg == "max_examples"), None) if decorator else None
-    usual, full = (_count(own, settings.get_profile(name).max_examples) for name in PROFILES)
+    owns = calls["examples"].args if "examples" in calls else [own] * len(PROFILES)
+    usual, full = map(_count, owns, [settings.get_profile(name).max_examples for name in PROFILES])
     return str(usual) if usual == full else f"{usual} (`make check-all`: {full})"
 
 

@@ -33,7 +33,15 @@ from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
-_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Membrane: MEMBRANE, Cruciform: CRUCIFORM}
+_HINGES = {
+    Notch: NOTCH,
+    Neck: NECK,
+    Leaf: LEAF,
+    ReinforcedLeaf: REINFORCED_LEAF,
+    Rod: ROD,
+    Membrane: MEMBRANE,
+    Cruciform: CRUCIFORM,
+}
 _STATED = {ComplianceMatrix: GIVEN, Spring: SPRING, Contact: CONTACT}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
 _OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}

@@ -21,16 +21,16 @@ class Interferometer(DisplacementGauge):
     bandwidth: Annotated[Number, FREQUENCY, POSITIVE] | None = None
 
     @property
-    def range(self) -> Number:
+    def range(self) -> Number:  # pyright: ignore[reportIncompatibleVariableOverride]
         """All of its travel."""
         return self.travel
 
     @property
-    def resolution(self) -> Number:
+    def resolution(self) -> Number:  # pyright: ignore[reportIncompatibleVariableOverride]
         """One step."""
         return self.fringe / self.steps
 
     @property
-    def noise_density(self) -> Number | None:
+    def noise_density(self) -> Number | None:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Not known."""
         return None

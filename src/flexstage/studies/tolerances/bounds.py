@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-
-import numpy as np
+from math import hypot
 
 from flexstage.base.finding import Finding
 from flexstage.base.units.unit import show
@@ -57,5 +56,5 @@ def _reach(target: Target, variables: tuple[Deviation, ...]) -> float:
         if variable.bounded is not None:
             bounded += abs(factor) * variable.bounded
         else:
-            spread += (factor * variable.deviation) ** 2
-    return float(bounded + REACH * np.sqrt(spread))
+            spread = hypot(spread, factor * variable.deviation)
+    return bounded + REACH * spread

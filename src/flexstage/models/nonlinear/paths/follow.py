@@ -65,7 +65,9 @@ def follow_to_event(
                 if found is None:
                     break  # the step went over to another path
                 _require_lawful(course, found.event or point, last, bent, reserve)
-                return found
+                if found.factor <= most:
+                    return found
+                return replace(found, last=_zero(course, last, found.event or point, lambda each: each.factor - most, 1e-6) or last)
             _require_lawful(course, point, last, bent, reserve)
             if bent is None and _excess(point) < 0.0:
                 bent = _zero(course, last, point, _excess, 1e-4) or point
@@ -98,12 +100,12 @@ def _first_event(course: Course, last: Point, point: Point, bent: Point | None, 
 def continued(start: Task, end: Task) -> Found:
     """The equilibrium (of one case) that continues that of `start` as loads and held coordinates go in proportion to those of `end`.
 
-    An equilibrium of `end` that is next to the start, that is not stable, or the path of which begins at one that is not, is returned as
-    it is. Else `status` is `CRITICAL` where the path has a limit point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the
-    share `reached`.
+    An equilibrium of `end` that is next to the start, or the path of which begins at one that is not stable, is returned as it is. So is
+    one that is not stable where the path has no stable one, or bends off before. Else `status` is `CRITICAL` where the path has a limit
+    point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the share `reached`.
     """
     model, hold = end.model, end.hold
-    whole = Found(end.start, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1), np.ones(1))
+    whole = Found(end.start, np.array([Status.CONVERGED]), np.zeros(1, int), np.zeros(1), np.ones(1))
     kept = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
     if apart(model, start.start, end.start) < _SAME:
         return whole
@@ -113,14 +115,20 @@ def continued(start: Task, end: Task) -> Found:
     if begin.motions or not np.isfinite(begin.slope):
         return whole
     after = point_at(course, whole, 1.0, step=course.scale * between(start.start, end.start), start=begin)
-    if after.motions or misfit(course.scale, None, begin, after) <= 1.0:  # one step of `march` would end there
+    if not after.motions and misfit(course.scale, None, begin, after) <= 1.0:  # one step of `march` would end there
         return whole
+
+    def lost(status: Status, reached: float) -> Found:
+        return whole if after.motions else replace(whole, status=np.array([status]), reached=np.array([reached]))
+
     try:
         followed = follow_to_event(course, begin, 1.0, 1e-6, length=1.0 / begin.slope)
     except LowerBoundError as error:
-        return replace(whole, status=np.array([Status.NOT_FOLLOWED]), reached=np.array([error.bound]))
+        return lost(Status.NOT_FOLLOWED, error.bound)
     if followed.event is not None and followed.factor <= 1.0:
-        return replace(whole, status=np.array([Status.CRITICAL]), reached=np.array([followed.factor]))
+        return lost(Status.CRITICAL, followed.factor)
+    if after.motions and followed.bend:
+        return whole
     found = search(model, followed.last.found.pose, end.loads, hold, USUAL)
     return whole if found.status[0] == Status.CONVERGED and apart(model, found.pose, end.start) < _SAME else found
 
