@@ -85,6 +85,20 @@ class Heading:
 
 
 @dataclass(frozen=True)
+class Layout:
+    """The table of a result class, its `TABLE`: title, fields in their order (absent: all that a cell holds), head over names, notes.
+
+    Title and notes may hold attributes of the result, as `{self.point}`; of several results, those of the first. A result adds notes that
+    depend on its values by a property `notes`.
+    """
+
+    title: str
+    fields: str = ""
+    head: str = ""
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Field:
     """What is told of a result: its name, type, annotations, and the first line that explains it."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, TypeAlias
@@ -152,6 +152,27 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
     told = {each.name: (each, value) for each, value in values_of(record)[0].items()}
     chosen = [told[name] for name in fields] if fields else [each for each in told.values() if not each[0].axes and is_cell(each[1])]
     return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
+
+
+def result_table(source: Any, *, notes: Iterable[str] = ()) -> Table | None:
+    """The table of a result, or of results in a sequence or by name, as `TABLE` of its class says; `None` where there is none.
+
+    >>> from flexstage.analysis.workspace.drive import Drive
+    >>> one = np.ones(1)
+    >>> result_table(Drive(("B1",), 1.5e-7 * one, 0.0 * one, 1e3 * one, 500.0 * one, 4e-7 * one)).title
+    'Drive'
+    """
+    several = source.values() if isinstance(source, Mapping) else source if isinstance(source, Sequence) else (source,)
+    one = next(iter(several), None)
+    if one is None:
+        return None
+    layout, fields = one.TABLE, one.TABLE.fields.split()
+    own = layout.notes if one is not source else (*layout.notes, *getattr(one, "notes", ()))
+    title, *told = (text.format(self=one) for text in (layout.title, *own))
+    provenance = getattr(one, "provenance", "")
+    if one is source and not any(field.axes for field in values_of(one)[0]):
+        return record_table(title, one, *fields, notes=[*told, *notes], provenance=provenance)
+    return row_table(title, source, *fields, head=layout.head, notes=[*told, *notes], provenance=provenance)
 
 
 def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:

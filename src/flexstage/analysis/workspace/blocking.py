@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.record import VIEW, Along, Heading
+from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, FORCE, STIFFNESS
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -27,6 +27,8 @@ class StackLine(InNotebook):
     `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `stage_stiffness` [N/m] the
     stage's at its ends, other strokes held; `travel` [m] and `force` [N] (compression) the crossing of both lines.
     """
+
+    TABLE: ClassVar[Layout] = Layout("Stacks against the stage")
 
     actuators: tuple[str, ...]
     free: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("free stroke", digits=4)]

@@ -36,7 +36,7 @@ from flexstage.show.command.options import (
     text_option,
 )
 from flexstage.show.command.values import motions, names
-from flexstage.show.table import Table, row_table
+from flexstage.show.table import Table, result_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
 from flexstage.show.tables.force_workspace import force_workspace_tables
@@ -117,7 +117,7 @@ def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
     yield None if workspace.worst_case is None else tables.corner_table(workspace.worst_case)
     yield None if workspace.polytope is None else tables.extent_table(workspace.polytope)
     yield None if workspace.map_error is None else tables.map_error_table(workspace.map_error)
-    yield None if workspace.drive is None else row_table("Drive", workspace.drive)
+    yield result_table(workspace.drive)
     yield None if workspace.gauges is None else tables.gauge_range_table(workspace.gauges)
     yield None if workspace.resolution is None else tables.resolution_table(workspace.resolution)
     yield None if workspace.clearance is None else tables.clearance_table(workspace.clearance)

@@ -7,7 +7,7 @@ from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.page import Block, Folded, Picture, Prose, Section, fold, section
-from flexstage.show.table import row_table
+from flexstage.show.table import result_table
 from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.strength import buckling_table, load_table, platform_line_table, stress_table
 from flexstage.show.tables.workspace import (
@@ -49,7 +49,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
                 "Extents, error of the linear map, volts",
                 None if reach.polytope is None else extent_table(reach.polytope),
                 None if reach.map_error is None else map_error_table(reach.map_error),
-                None if reach.drive is None else row_table("Drive", reach.drive),
+                result_table(reach.drive),
             ),
         ],
     )
@@ -85,6 +85,6 @@ def _strength(reach: Workspace) -> list[Block | None]:
 def _more(reach: Workspace) -> Folded | None:
     return fold(
         "Stacks against the stage, buckling",
-        None if reach.stack_lines is None else row_table("Stacks against the stage", reach.stack_lines),
+        result_table(reach.stack_lines),
         None if reach.buckling is None or not reach.buckling.links else buckling_table(reach.buckling),
     )

@@ -15,7 +15,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Array
 from flexstage.show.display import NO_VALUE, format_value, number, percent
-from flexstage.show.table import Cell, Column, Content, Mark, Table, first_design, make_table, row_table
+from flexstage.show.table import Cell, Column, Content, Mark, Table, first_design, make_table, result_table
 
 _WEAK, _POOR = 1.0, 1.5
 
@@ -23,7 +23,7 @@ _WEAK, _POOR = 1.0, 1.5
 def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
     """All tables of what the parts bear; absent what the workspace does not tell."""
     yield None if workspace.platform_lines is None else platform_line_table(workspace.platform_lines)
-    yield None if workspace.stack_lines is None else row_table("Stacks against the stage", workspace.stack_lines)
+    yield result_table(workspace.stack_lines)
     yield None if workspace.stress is None else stress_table(workspace.stress)
     yield None if workspace.buckling is None else buckling_table(workspace.buckling)
     yield None if workspace.loads is None else load_table(workspace.loads, workspace.limits.from_zero)
