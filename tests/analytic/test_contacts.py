@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.caveats import defaults, warnings
+from flexstage.analysis.caveats import defaults, design_warnings
 from flexstage.analysis.loaded.seating import seated, seating
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance, stiffness
@@ -150,8 +150,8 @@ def test_a_ball_on_a_flat_lifts_off_and_slips_by_its_forces():
     ],
 )
 def test_balls_that_leave_their_seats_are_told(stage, what):
-    assert any(what in str(finding) for finding in warnings(stage))
-    assert not any(what in str(finding) for finding in warnings(coupling()))
+    assert any(what in str(finding) for finding in design_warnings(stage))
+    assert not any(what in str(finding) for finding in design_warnings(coupling()))
 
 
 @pytest.mark.parametrize(

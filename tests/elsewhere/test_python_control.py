@@ -129,7 +129,7 @@ def _found_by_search(plant_of_samples, spec: SearchSpec) -> Loop:
 
 
 @pytest.mark.parametrize(
-    "wish", [SearchSpec(), pytest.param(SearchSpec(objective=TuningObjective.REJECTION, gain=0.1), marks=pytest.mark.full)]
+    "spec", [SearchSpec(), pytest.param(SearchSpec(objective=TuningObjective.REJECTION, gain=0.1), marks=pytest.mark.full)]
 )
 def test_margins_of_what_a_search_finds(spec):
     """Gain, phase, delay and peak of S from their own responses on a dense grid, within 1e-3; and their poles at the edge of gain."""

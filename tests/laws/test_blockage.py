@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.caveats import warnings
+from flexstage.analysis.caveats import design_warnings
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
@@ -83,14 +83,14 @@ def test_freeing_what_is_advised_lets_the_stroke_move(name: str, trials: int) ->
 def test_actuators_that_are_blocked_alike_are_told_once() -> None:
     mechanism = case("double-triangle")
     locked = with_freedoms(mechanism, {name: frozenset() for name in freedoms(mechanism) if name.startswith("horizontal/")})
-    told = [warning for warning in warnings(locked) if "stroke cannot move" in warning.what]
+    told = [warning for warning in design_warnings(locked) if "stroke cannot move" in warning.what]
     assert [each.where for each in told] == ["B1, B2, B3", "B4, B5, B6"]
 
 
 def test_a_platform_without_actuators_that_cannot_move_is_told() -> None:
     mechanism = case("parallelogram")
     bare = replace(mechanism, units={}, placements={}, links={name: replace(link, free=()) for name, link in mechanism.links.items()})
-    assert any("all six freedoms" in warning.what for warning in warnings(replace(bare, requirements={})))
+    assert any("all six freedoms" in warning.what for warning in design_warnings(replace(bare, requirements={})))
 
 
 def test_the_links_that_block_are_named_with_what_to_free() -> None:

@@ -154,7 +154,7 @@ export class StageView {
   /** Shows a second picture beside the first, or takes it away. */
   beside(on: boolean): Controller | null {
     const place = byId("second");
-    placements.hidden = !on;
+    place.hidden = !on;
     this.studio.besides.set(on);
     const data = this.studio.scene.value;
     if (on && !this.second && data && this.viewer?.alive) this.second = flexstage?.view(place, data, { controls: false }) ?? null;
