@@ -199,7 +199,7 @@ def correction_table(lost: LostMotion) -> Table:
     >>> correction_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][3]
     '0.34422'
     """
-    return matrix_table("Corrected mapping: strokes that reach the wanted motion", lost.correction, fine=False)
+    return matrix_table("Corrected mapping: strokes that reach the wanted motion", lost.correction, units=("mrad",))
 
 
 def energy_table(lost: LostMotion) -> Table:
