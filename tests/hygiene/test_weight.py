@@ -16,14 +16,14 @@ CEILINGS = {
     "cases": 13_700,
     "models": 113_900,
     "analysis": 70_000,
-    "show": 73_100,
+    "show": 72_900,
     "solid": 80_600,
     "experiment": 104_500,
     "control": 174_200,
     "studies": 55_300,
     "apps": 38_800,
     ".": 400,
-    "all": 887_600,
+    "all": 887_400,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

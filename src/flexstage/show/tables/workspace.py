@@ -11,16 +11,7 @@ from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Number
 from flexstage.show.display import format_value, number
 from flexstage.show.table import Table, first_design, result_table
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
-
-
-def unit_of(coordinate: str) -> str:
-    """SI unit of a platform coordinate.
-
-    >>> unit_of("x"), unit_of("platform.rz")
-    ('m', 'rad')
-    """
-    return TWIST_UNITS[COMPONENTS.index(coordinate.rpartition(".")[2])]
+from flexstage.spatial.frame import MOTION
 
 
 def command_text(command: Mapping[str, Number]) -> str:
@@ -29,7 +20,7 @@ def command_text(command: Mapping[str, Number]) -> str:
     >>> command_text({"x": 50e-6, "rz": 244e-6})
     'x +-50 um, rz +-244 urad'
     """
-    return ", ".join(f"{name} +-{format_value(float(np.real(np.ravel(value)[0])), unit_of(name))}" for name, value in command.items())
+    return ", ".join(f"{name} +-{format_value(float(np.real(np.ravel(value)[0])), MOTION.unit(name))}" for name, value in command.items())
 
 
 def stroke_tables(workspace: Workspace) -> Iterator[Table | None]:
