@@ -62,6 +62,13 @@ class UnitOf:
 
 
 @dataclass(frozen=True)
+class UnitIn:
+    """Numbers of which each has the SI unit in a field beside it; tables show it."""
+
+    field: str
+
+
+@dataclass(frozen=True)
 class Called:
     """The key where the field has a symbol that is no name in Python, as R_a."""
 
@@ -74,7 +81,7 @@ class Heading:
 
     `text` stands over the column (absent: the name in words). `digits` are significant ones of each number (absent: decimals are
     aligned). `unit` is the display unit (absent: that of the quantity). `varying`: each number has the unit that suits it. `infinite`
-    is the word for an infinite value.
+    is the word for an infinite value. Values below `safe` are marked as warnings.
     """
 
     text: str = ""
@@ -82,6 +89,24 @@ class Heading:
     unit: str = ""
     varying: bool = False
     infinite: str = "inf"
+    safe: float = -np.inf
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The table of a result class, its `TABLE`: title, fields in their order (absent: all that a cell holds), head over names, notes.
+
+    Fields may be paths (`requirement.key`) and `INNER`; of a labelled matrix, its columns are shown. Title and notes may hold attributes of
+    the result, as `{self.point}`; of several results, those of the first. A result adds notes that depend on its values by a property
+    `notes`. `order`: rows ascend by that field, unknown values first. `merged`: rows with equal cells are one.
+    """
+
+    title: str
+    fields: str = ""
+    head: str = ""
+    notes: tuple[str, ...] = ()
+    order: str = ""
+    merged: bool = False
 
 
 @dataclass(frozen=True)
@@ -115,7 +140,7 @@ class Field:
         """How tables show it.
 
         >>> Field("blocking_force", float, (Heading(digits=4),)).heading
-        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf')
+        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', safe=-inf)
         """
         own = self.annotation(Heading) or Heading()
         return replace(own, text=own.text or self.words)
@@ -141,7 +166,9 @@ class Field:
         value = getattr(record, self.name)
         by_name = self.annotation(UnitOf)
         return (
-            value if by_name is None or value is None else {key_with_unit(name, by_name.unit(name)): each for name, each in value.items()}
+            {key_with_unit(name, by_name.unit(name)): each for name, each in value.items()}
+            if by_name is not None and isinstance(value, Mapping)
+            else value
         )
 
     @property
@@ -164,12 +191,38 @@ def key_with_unit(name: str, unit: str) -> str:
 
 
 @functools.cache
-def walked_fields(kind: type) -> tuple[Field, ...]:
-    """What is told of results of that class: fields, then properties."""
+def result_fields(kind: type) -> Mapping[str, Field]:
+    """All fields of results of that class by name, then its annotated properties; `INNER` ones too, which only tables show."""
     hints = get_type_hints(kind, include_extras=True)
-    own = [(each.name, hints[each.name], "") for each in fields(kind) if each.name != "reasons" and _is_walked(*_unwrap(hints[each.name]))]
+    own = [(each.name, hints[each.name], "") for each in fields(kind)]
     views = [(name, hint, doc) for name, hint, doc in _properties(kind) if get_origin(hint) is Annotated]
-    return tuple(Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *views))
+    return {name: Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *views)}
+
+
+@functools.cache
+def walked_fields(kind: type) -> tuple[Field, ...]:
+    """The fields of results of that class that documents hold: fields, then properties."""
+    own = {each.name for each in fields(kind)}
+    found = {name: each for name, each in result_fields(kind).items() if name != "reasons"}
+    return tuple(
+        each for name, each in found.items() if (_is_walked(each.type, each.annotations) if name in own else INNER not in each.annotations)
+    )
+
+
+def field_at(record: Any, path: str) -> tuple[Field, Any]:
+    """A field of a result by its name, or by its path through results within it, and its value; None where a reason says why.
+
+    >>> @dataclass(frozen=True)
+    ... class Bar:
+    ...     "A bar."
+    ...     area: float
+    >>> field_at(Bar(2.0), "area")[1]
+    2.0
+    """
+    *owners, name = path.split(".")
+    owner = functools.reduce(getattr, owners, record)
+    field = result_fields(type(owner))[name]
+    return field, None if name in getattr(owner, "reasons", ()) else field.of(owner)
 
 
 def _unwrap(hint: Any) -> tuple[Any, tuple[Any, ...]]:

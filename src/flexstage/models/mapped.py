@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
@@ -16,6 +16,7 @@ import scipy
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number
+from flexstage.base.record import Heading, Layout
 from flexstage.base.storage.digest import digest
 from flexstage.base.units.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.beams.compliance import compliance
@@ -42,11 +43,13 @@ class LeverStiffness:
     `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, `long_arm` r_2.
     """
 
-    drive: Annotated[Number, STIFFNESS]
-    pivot: Annotated[Number, ROTATIONAL_STIFFNESS]
-    pole: Annotated[Number, STIFFNESS]
-    short_arm: Annotated[Number, LENGTH]
-    long_arm: Annotated[Number, LENGTH]
+    TABLE: ClassVar[Layout] = Layout("Springs of the lever units", "drive pivot pole short_arm long_arm gain tip_compliance", head="unit")
+
+    drive: Annotated[Number, STIFFNESS, Heading("drive K_1")]
+    pivot: Annotated[Number, ROTATIONAL_STIFFNESS, Heading("pivot K_theta2")]
+    pole: Annotated[Number, STIFFNESS, Heading("pole K_3")]
+    short_arm: Annotated[Number, LENGTH, Heading("arm r_1")]
+    long_arm: Annotated[Number, LENGTH, Heading("arm r_2")]
 
     @property
     def softness(self) -> Number:

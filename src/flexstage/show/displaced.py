@@ -24,7 +24,7 @@ from flexstage.show.page import Fact, Facts, Head, Headline, Picture, Section, p
 from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
-from flexstage.show.table import Column, Table, make_table, matrix_table, number_cells
+from flexstage.show.table import Column, Table, column_table, make_table, matrix_table, number_cells, result_table
 from flexstage.show.viewer.animation import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
@@ -117,12 +117,9 @@ def _buckling_text(found: CaseFactors) -> str:
     return text if len(found.cases) == 1 else f"{text}, the least of {len(found.cases)} load cases and stroke ends"
 
 
-def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table]:
+def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table | None]:
     """Load cases and stroke ends with their factors; how the least gives way, and equilibria `after` that."""
-    heads = ["load", "place", Column("factor"), "kind", "gives way"]
-    rows = [[case.load, case.place, _factor_text(case), case.kind, case.buckling_mode or case.why] for case in found.cases]
-    note = "Each load by itself, all else stays, the place too, where the stage counts as free under the force that brings it there."
-    table = make_table("Load cases and stroke ends", heads, rows, notes=[note])
+    table = result_table(found.cases)
     least = found.least
     if least is None:
         return [table]
@@ -130,12 +127,6 @@ def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Tab
     shape, size = shape_of(least), "It has no size of its own: here its largest number is 1 mm, or 1 mrad."
     scaled = replace(shape, values=1e-3 * shape.values)
     return [table, matrix_table(f"Shape: {least.load}, {least.place}", scaled, notes=[size]), *beyond]
-
-
-def _factor_text(case: CaseFactor) -> str:
-    if np.isfinite(case.factor):
-        return format_value(case.factor, "1")
-    return f"> {format_value(case.bound, '1')}" if np.isfinite(case.bound) else "-"
 
 
 def shape_of(case: CaseFactor) -> Matrix:
@@ -188,7 +179,7 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
     """Where the stage gives way, what it does on the way to the last misalignment, and the loads in all flexures there."""
     last = format_value(float(found.along.values[-1, 0]), "rad" if found.axis.startswith("r") else "m", 4)
     return [
-        make_table("Misaligned", ["copy", "axis", "what it bears"], [[found.copy, found.axis, critical_text(found)]]),
+        make_table("Misaligned", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
         along_table(f"Along {found.axis}", found.along),
         matrix_table(f"Loads in flexures at {last}, on each end in the frame of its start", found.loads),
     ]
@@ -230,29 +221,16 @@ def critical_text(found: Misaligned) -> str:
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
     """What each copy bears along or about its axes: where it gives way, what forces it to a size, and the stress then."""
-    unit = "rad" if found.critical.columns[0].startswith("r") else "m"
-    size = format_value(found.size, unit, 4)
+    size = format_value(found.size, "rad" if found.critical.columns[0].startswith("r") else "m", 4)
     alone = "Of one copy alone, in its own frame"
     return [
-        _by_copy("Misalignment at which the stage gives way", found.critical, f"{alone}. >: stable so far.", found.followed),
-        _by_copy(f"Load that forces it to {size}", found.load, f"{alone}, about its origin, of a link its middle."),
-        _by_copy(f"Largest stress of a flexure at {size}", found.stress, "Von Mises; weight included."),
+        column_table("Critical misalignment", found.critical, head="instance", notes=[f"{alone}. -: stable as far as it is followed."]),
+        column_table("Largest stable misalignment followed", found.followed, head="instance"),
+        column_table(
+            f"Load at a misalignment of {size}", found.load, head="instance", notes=[f"{alone}, about its origin, of a link its middle."]
+        ),
+        column_table(f"Largest stress of a flexure at {size}", found.stress, head="instance", notes=["Von Mises; weight included."]),
     ]
-
-
-def _by_copy(title: str, found: Matrix, note: str, followed: Matrix | None = None) -> Table:
-    unit = found.unit if isinstance(found.unit, str) else found.unit[0][0]
-    bounds = found.values if followed is None else followed.values
-    cells = [[_bounded(*pair, unit) for pair in zip(*rows, strict=True)] for rows in zip(found.values, bounds, strict=True)]
-    rows = [[copy, *row] for copy, row in zip(found.rows, cells, strict=True)]
-    heads = ["copy", *(Column(f"{'about' if axis.startswith('r') else 'along'} {axis[-1]}") for axis in found.columns)]
-    return make_table(title, heads, rows, notes=[note])
-
-
-def _bounded(value: float, bound: float, unit: str) -> str:
-    """A value, or the bound that it is above."""
-    text = "-" if np.isnan(bound) else format_value(float(bound), unit, 4)
-    return text if np.isfinite(value) or np.isnan(bound) else f"> {text}"
 
 
 def _flags(said: tuple[str, ...]) -> Array:

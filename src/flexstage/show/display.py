@@ -80,8 +80,8 @@ _PREFERRED = {
 }
 
 
-def display_unit_of(unit: str, largest: float = 1.0) -> DisplayUnit:
-    """The display unit of an SI unit for values up to `largest` [SI].
+def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit:
+    """The display unit of an SI unit for values up to `largest` [SI]: one of those `shown`, else the one that suits the values.
 
     >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')
@@ -90,8 +90,8 @@ def display_unit_of(unit: str, largest: float = 1.0) -> DisplayUnit:
     if ladder is None:
         return DisplayUnit(unit, 1.0)
     factors = dict(ladder)
-    preferred = _PREFERRED.get(unit, ladder[0][0])
-    if largest == 0.0 or not math.isfinite(largest) or _TOO_SMALL <= largest * factors[preferred] < _TOO_LARGE:
+    preferred = next((name for name in shown if name in factors), _PREFERRED.get(unit, ladder[0][0]))
+    if preferred in shown or largest == 0.0 or not math.isfinite(largest) or _TOO_SMALL <= largest * factors[preferred] < _TOO_LARGE:
         return DisplayUnit(preferred, factors[preferred])
     fitting = [name for name, factor in ladder if largest * factor >= 1.0]
     chosen = fitting[-1] if fitting else ladder[0][0]

@@ -15,33 +15,33 @@ from flexstage.mechanism.grammar.grammar import TAGS
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
-from flexstage.show.table import Cell, Mark, Table, make_table
+from flexstage.show.table import Cell, Mark, Table, make_table, text_table
 
 _SECTIONS: Mapping[type, str] = {Material: "materials", Piezo: "stacks", Gauge: "gauges"}
 _TITLES: Mapping[type, str] = {Material: "Materials", Piezo: "Piezo stacks", Gauge: "Gauges"}
 
 
-def case_table() -> Table:
+def case_table() -> Table | None:
     """The shipped cases by name.
 
     >>> case_table().rows[0][0].text
     'double-triangle'
     """
-    rows = [(Cell(name, Mark.STRONG), case.summary) for name, case in CASES.items()]
-    return make_table("Cases", ["name", "what it is"], rows, notes=["flexstage new stage.toml --case NAME"])
+    summaries = {name: case.summary for name, case in CASES.items()}
+    return text_table("Cases", ["name", "summary"], summaries, notes=["flexstage new stage.toml --case NAME"])
 
 
-def parameter_table(name: str) -> Table:
+def parameter_table(name: str) -> Table | None:
     """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name where there is no such case.
 
     >>> parameter_table("parallelogram").texts()[-2]
     ['spacing', 'length', '50 mm']
     """
     own = shipped_case(name).parameters
-    rows = [(Cell(each.name, Mark.STRONG), each.kind, each.text) for each in parameters(own).values()]
+    rows = {each.name: (each.kind, each.text) for each in parameters(own).values()}
     meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
     notes = [meaning, f"flexstage new stage.toml --case {name} --case-parameter NAME=VALUE"]
-    return make_table(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
+    return text_table(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
 
 
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:

@@ -31,7 +31,7 @@ from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
 from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
-from flexstage.show.tables.workspace import stroke_table
+from flexstage.show.tables.workspace import stroke_tables
 
 _TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
     Table: lambda table: (table,),
@@ -41,7 +41,7 @@ _TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
     Modes: lambda result: (mode_table(result),),
     Response: lambda result: (response_table(result),),
     RandomResponse: lambda result: (random_table(result),),
-    Workspace: lambda result: (stroke_table(result),),
+    Workspace: stroke_tables,
     Drift: lambda result: (drift_table(result),),
     ErrorBudget: error_budget_tables,
     Sensitivities: lambda result: (frequency_sensitivity_table(result), loss_sensitivity_table(result)),

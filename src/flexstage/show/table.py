@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, TypeAlias
@@ -12,7 +12,7 @@ import numpy as np
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import Field, values_of
+from flexstage.base.record import Field, Heading, UnitIn, UnitOf, by_name, field_at, result_fields, values_of
 from flexstage.base.storage.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
 from flexstage.base.units.quantity import Bound, Quantity
 from flexstage.show.display import (
@@ -25,7 +25,6 @@ from flexstage.show.display import (
     format_value,
     number,
     percent,
-    preferred_unit,
 )
 
 
@@ -67,10 +66,15 @@ class Column:
 
 
 _MANY = 60
+_PLAIN = Heading()
+_NO_FIELDS: Mapping[str, Field] = {}
 PAGE_ROWS = 300
 """Rows of a table that a page shows: the freedoms of a thousand bodies were a megabyte that nobody reads."""
 
 Content: TypeAlias = str | Cell
+
+
+_ColumnCells: TypeAlias = tuple[Column, list[Cell]]
 
 
 @dataclass(frozen=True)
@@ -107,6 +111,18 @@ def make_table(
     return Table(title, heads, cells, tuple(notes), provenance)
 
 
+def text_table(
+    title: str, heads: Sequence[Column | str], rows: Mapping[str, str | Sequence[str]], *, notes: Iterable[str] = ()
+) -> Table | None:
+    """A table of names with a text each, or several; `None` without any.
+
+    >>> text_table("Sources", ["", "source"], {"steel": "data sheet"}).texts()
+    [['', 'source'], ['steel', 'data sheet']]
+    """
+    cells = [(Cell(name, Mark.STRONG), *([texts] if isinstance(texts, str) else texts)) for name, texts in rows.items()]
+    return make_table(title, heads, cells, notes=notes) if rows else None
+
+
 def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
     """A column of SI values in a display unit, decimals aligned, or each to as many significant `digits`.
 
@@ -120,38 +136,150 @@ def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None 
     return [Cell(text, _mark_of(text)) for text in texts]
 
 
-def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
+def row_table(
+    title: str,
+    source: Any,
+    *fields: str,
+    head: str = "",
+    order: str = "",
+    merged: bool = False,
+    notes: Iterable[str] = (),
+    provenance: str = "",
+) -> Table:
     """One row a record, or a name, and a column a field, headed by its name in words with its quantity's unit, or as its `Heading` says.
 
-    `source` is a mapping or sequence of records of one kind, or a record with arrays `Along` names. `fields` are those shown, in that order
-    (absent: all that a cell can hold); `head` stands over the names. What lies outside of a field's `Bound` is marked.
+    `source` is a mapping or sequence of records of one kind, or a record with arrays `Along` names or labelled matrices. `fields` are those
+    shown, in that order (absent: all that a cell can hold); `head` is the heading of the names. Values outside of a field's `Bound` are
+    marked. `order` and `merged` as in `Layout`.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
     >>> row_table("Drive", Drive(("B1",), 1.5e-7 * one, 0.0 * one, 1e3 * one, 500.0 * one, 4e-7 * one), "gain", "low", "high").texts()
     [['actuator', 'gain [um/V]', 'low [V]', 'high [V]'], ['B1', '0.15', '0', '1000']]
     """
-    sheet = rows_of(source)
-    told = {each.name: each for each in sheet.columns}
-    chosen = [told[name] for name in fields] if fields else [each for each, values in sheet.columns.items() if all(map(is_cell, values))]
-    names = {head or each: values for each, values in sheet.names.items()}
-    return sheet_table(title, Sheet(names, {each: sheet.columns[each] for each in chosen}), notes=notes, provenance=provenance)
+    if not fields:
+        sheet = rows_of(source)
+        told = {each: values for each, values in sheet.columns.items() if all(map(is_cell, values))}
+        return sheet_table(title, Sheet({head or each: values for each, values in sheet.names.items()}, told), notes, provenance)
+    name, names = _row_names(source, fields)
+    named = [_name_column(head or name, names)] if names else []
+    columns = [*named, *(each for path in fields for each in _columns_at(source, path, names))]
+    table = _columns_table(title, columns, notes, provenance)
+    rows = [(replace(first, mark=Mark.STRONG), *others) for first, *others in table.rows]
+    if order:
+        factors = np.nan_to_num(np.array(_values_at(source, order)[1], dtype=float), nan=-1.0, posinf=1e300)
+        rows = [rows[place] for place in np.argsort(np.round(factors, 6), kind="stable")]
+    table = replace(table, rows=tuple(rows))
+    return merge_rows(table) if merged else table
 
 
-def sheet_table(title: str, sheet: Sheet, *, notes: Iterable[str] = (), provenance: str = "") -> Table:
+def _row_names(source: Any, paths: Iterable[str]) -> tuple[str, tuple[Any, ...]]:
+    """What the rows of a table are, and the name of each; none of a sequence."""
+    if isinstance(source, Mapping):
+        return "name", tuple(source)
+    if isinstance(source, Sequence):
+        return "", ()
+    found = [field_at(source, path) for path in paths]
+    matrix = next((value for _, value in found if isinstance(value, Matrix)), None)
+    if matrix is not None:
+        return "along", matrix.rows
+    axis, names = field_at(source, next(field.axes[0] for field, _ in found if field.axes))
+    return axis.words.removesuffix("s"), names
+
+
+def _values_at(source: Any, path: str) -> tuple[Field, Any]:
+    """A field of a record with its values by name, or of records with the value of each."""
+    if isinstance(source, (Mapping, Sequence)):
+        found = [field_at(each, path) for each in (source.values() if isinstance(source, Mapping) else source)]
+        return found[0][0], [value for _, value in found]
+    field, value = field_at(source, path)
+    return field, value if isinstance(value, Matrix) else by_name(value)
+
+
+def _columns_at(source: Any, path: str, names: Sequence[str]) -> Iterator[_ColumnCells]:
+    """The columns of a field: those of a matrix, one of other values, none without any."""
+    field, values = _values_at(source, path)
+    beside, of_name = field.annotation(UnitIn), field.annotation(UnitOf)
+    if isinstance(values, Matrix):
+        yield from matrix_columns(values, result_fields(type(source)), field.annotation(Heading) or _PLAIN)
+    elif values is not None:
+        units = _values_at(source, beside.field)[1] if beside else [of_name.unit(name) for name in names] if of_name else ()
+        yield field_column(field, values, units)
+
+
+def merge_rows(table: Table) -> Table:
+    """A table in which rows of equal cells are one, under all of their names; links of copies only with those of the same name.
+
+    >>> merge_rows(make_table("", ["link", "free"], [("B1/tip", "rz"), ("B1/foot", "rz"), ("B2/tip", "rz")])).texts()[1:]
+    [['tip (B1, B2)', 'rz'], ['B1/foot', 'rz']]
+    """
+    groups: dict[tuple[str, ...], list[tuple[Cell, ...]]] = {}
+    for row in table.rows:
+        copy, _, own = row[0].text.rpartition("/")
+        groups.setdefault((copy and own, *(each.text for each in row[1:])), []).append(row)
+    rows = tuple((replace(rows[0][0], text=_join_names([row[0].text for row in rows])), *rows[0][1:]) for rows in groups.values())
+    return replace(table, rows=rows)
+
+
+def _join_names(names: Sequence[str]) -> str:
+    copies, _, owns = zip(*(name.rpartition("/") for name in names), strict=True)
+    return f"{owns[0]} ({', '.join(copies)})" if len(names) > 1 and all(copies) else ", ".join(names)
+
+
+def sheet_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
     """Rows and columns of a result, names first."""
-    names = [(Column(head, numeric=False), [Cell(str(each), Mark.STRONG) for each in values]) for head, values in sheet.names.items()]
-    columns = [*names, *(field_column(*each) for each in sheet.columns.items())]
-    return make_table(
-        title, [column for column, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes=notes, provenance=provenance
-    )
+    names = [_name_column(*each) for each in sheet.names.items()]
+    return _columns_table(title, [*names, *(field_column(*each) for each in sheet.columns.items())], notes, provenance)
+
+
+def column_table(title: str, matrix: Matrix, *, head: str = "", unit: str = "", notes: Iterable[str] = ()) -> Table:
+    """A labelled matrix whose columns are quantities, as `matrix_columns` shows them; `head` heads the names, `unit` is a display unit.
+
+    >>> column_table("a", Matrix(np.array([[2e-6, 3.0]]), ("x",), ("low", "share"), (("m", "1"),)), head="along").texts()
+    [['along', 'low [um]', 'share'], ['x', '2', '3']]
+    """
+    return _columns_table(title, [_name_column(head, matrix.rows), *matrix_columns(matrix, heading=Heading(unit=unit))], notes)
+
+
+def _name_column(head: str, names: Iterable[Any]) -> _ColumnCells:
+    return Column(head, numeric=False), [Cell(str(each), Mark.STRONG) for each in names]
+
+
+def _columns_table(title: str, columns: Sequence[_ColumnCells], notes: Iterable[str], provenance: str = "") -> Table:
+    rows = zip(*(cells for _, cells in columns), strict=True)
+    return make_table(title, [column for column, _ in columns], rows, notes=notes, provenance=provenance)
 
 
 def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
     """A record as rows of name, value and unit; `fields` as for `row_table`."""
-    told = {each.name: (each, value) for each, value in values_of(record)[0].items()}
-    chosen = [told[name] for name in fields] if fields else [each for each in told.values() if not each[0].axes and is_cell(each[1])]
+    told = values_of(record)[0].items()
+    chosen = [field_at(record, path) for path in fields] or [each for each in told if not each[0].axes and is_cell(each[1])]
     return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
+
+
+def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = ()) -> Table | None:
+    """The table of a result, or of results in a sequence or by name, as `TABLE` of its class says; `None` where there is none.
+
+    `fields` and `title` replace those of `TABLE`.
+
+    >>> from flexstage.analysis.workspace.drive import Drive
+    >>> one = np.ones(1)
+    >>> result_table(Drive(("B1",), 1.5e-7 * one, 0.0 * one, 1e3 * one, 500.0 * one, 4e-7 * one)).title
+    'Drive'
+    """
+    several = source.values() if isinstance(source, Mapping) else source if isinstance(source, Sequence) else (source,)
+    one = next(iter(several), None)
+    if one is None:
+        return None
+    layout, paths = one.TABLE, (fields or one.TABLE.fields).split()
+    own = layout.notes if one is not source else (*layout.notes, *getattr(one, "notes", ()))
+    title, *told = (text.format(self=one) for text in (title or layout.title, *own))
+    said, provenance = [*told, *notes], getattr(one, "provenance", "")
+    known = [field_at(one, path) for path in paths] or values_of(one)[0].items()
+    if one is source and not any(field.axes or isinstance(value, Matrix) for field, value in known):
+        return record_table(title, one, *paths, notes=said, provenance=provenance)
+    table = row_table(title, source, *paths, head=layout.head, order=layout.order, merged=layout.merged, notes=said, provenance=provenance)
+    return table if table.rows else None
 
 
 def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
@@ -196,8 +324,8 @@ def further(rest: int) -> str:
     return f"{rest} further rows."
 
 
-def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:
-    """The column of a field and its cells, for tables that stand beside others' columns.
+def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ()) -> _ColumnCells:
+    """The column of a field and its cells, for tables beside other columns; `units`: the SI unit of each value.
 
     >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
@@ -208,24 +336,56 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     >>> [cell.text for cell in field_column(Field("after", float, ()), [2.1e11, 1.6e-3])[1]]
     ['2.1e11', '0.0016']
     """
-    heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
+    heading, quantity = field.heading, field.annotation(Quantity)
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
         return Column(heading.text, numeric=False), [Cell(_cell_text(each)) for each in values]
     numbers = np.array([np.nan if each is None else float(first_design(each, 0)) for each in values])
-    if heading.varying:
-        cells = [Cell(format_value(each, field.unit, heading.digits or DIGITS)) for each in _zero_noise(numbers).tolist()]
+    units = units or ([field.unit] * len(numbers) if heading.varying else ())
+    varying = heading.varying or len(set(units)) > 1
+    largest = float(np.max(np.abs(numbers[np.isfinite(numbers)]), initial=0.0))
+    form = display_unit_of(units[0], largest, heading.unit) if units else display_unit(quantity, heading.unit)
+    if varying:
+        cells = _cells_with_units(numbers, units, heading.digits)
     elif form.unit == "%":
         cells = [Cell(percent(each, heading.digits or 4), bar=each) for each in _zero_noise(numbers, 1.0).tolist()]
-    elif field.annotation(Quantity) is None:  # numbers of who knows what beside one another: none is noise against the others
+    elif quantity is None and not units:  # numbers of who knows what beside one another: none is noise against the others
         cells = [Cell(text, _mark_of(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
     else:
         cells = number_cells(numbers, form, heading.digits)
     cells = [Cell(NO_VALUE, Mark.FAINT) if np.isnan(each) else cell for cell, each in zip(cells, numbers, strict=True)]
     bound = field.annotation(Bound) or Bound()
-    outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
-    cells = [replace(cell, mark=Mark.FAIL) if out else cell for cell, out in zip(cells, outside, strict=True)]
+    marks = [_mark_within(each, bound, heading.safe) for each in numbers]
+    cells = [replace(cell, mark=mark or cell.mark) for cell, mark in zip(cells, marks, strict=True)]
     cells = [replace(cell, text=heading.infinite) if np.isposinf(each) else cell for cell, each in zip(cells, numbers, strict=True)]
-    return Column(heading.text, "" if heading.varying or form.unit == "%" else form.unit), cells
+    return Column(heading.text, "" if varying or form.unit in ("%", "1") else form.unit), cells
+
+
+def _mark_within(value: float, bound: Bound, safe: float) -> Mark | None:
+    """The mark of a value outside of its bound, where it is unknown below it too, and of one that is near."""
+    low = np.isfinite(bound.low) and not value >= bound.low - NOISE * abs(bound.low)
+    if low or value > bound.high + NOISE * abs(bound.high):
+        return Mark.FAIL
+    return Mark.WARN if value < safe else None
+
+
+def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, heading: Heading = _PLAIN) -> Iterator[_ColumnCells]:
+    """The columns of a labelled matrix (first design): numbers in one display unit where they share an SI unit, else each with its own.
+
+    A column named as one of `fields` has its heading and bound, others that of the matrix.
+
+    >>> [cells[0].text for _, cells in matrix_columns(Matrix(np.array([[2e-6], [1e-3]]), ("x", "rx"), ("low",), (("m",), ("rad",))))]
+    ['2 um']
+    """
+    for name, values, units in zip(matrix.columns, first_design(matrix.values, 2).T, zip(*_entry_units(matrix), strict=True), strict=True):
+        own = fields.get(name)
+        yield field_column(own if own and own.annotation(Heading) else Field(name, float, (heading,)), list(values), units)
+
+
+def _cells_with_units(values: Array, units: Sequence[str], digits: int | None = None) -> list[Cell]:
+    """Values each with the display unit that suits it; rounding noise against the largest of the same unit is 0."""
+    owns = np.array(units)
+    kept = [_zero_noise(np.where(owns == unit, values, 0.0))[place] for place, unit in enumerate(units)]
+    return [_with_unit(float(value), unit, digits or DIGITS) for value, unit in zip(kept, units, strict=True)]
 
 
 def _cell_text(value: Any) -> str:
@@ -240,11 +400,14 @@ def _zero_noise(values: Array, least: float = 0.0) -> Array:
     return np.where(np.isfinite(values) & (np.abs(values) < NOISE * largest), 0.0, values)
 
 
-def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, fine: bool = True, notes: Iterable[str] = ()) -> Table:
+def matrix_table(
+    title: str, matrix: Matrix, *, against: Matrix | None = None, units: tuple[str, ...] = (), notes: Iterable[str] = ()
+) -> Table:
     """A labelled matrix (first design of a batch) in display units.
 
     Rows and columns carry units and an entry is in row unit per column unit; where the entries' units are no such ratios, each entry
-    carries its own. `against` sets the scale of rounding noise; `fine`: angles in urad, else in mrad (lever arms come out in mm).
+    carries its own. `against` sets the scale of rounding noise; `units` are display units that
+    replace the preferred ones (with mrad, lever arms are in mm).
 
     >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
     >>> table.texts()
@@ -256,8 +419,8 @@ def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, f
     said += batch_note(matrix.values, 2)
     ends = _ends(matrix)
     if ends is None:
-        return _entries_with_units(title, matrix, kept, (*notes, *said))
-    rows, columns = (tuple(_form(unit, fine=fine) for unit in units) for units in ends)
+        return column_table(title, replace(matrix, values=kept), notes=[*notes, *said])
+    rows, columns = (tuple(display_unit_of(unit, 0.0, *units) for unit in own) for own in ends)
     heads = [Column(name, _unit(form)) for name, form in zip(short_names(matrix.columns), columns, strict=True)]
     lines = [
         [_row_head(name, form), *(_entry(value * form.factor / column.factor) for value, column in zip(line, columns, strict=True))]
@@ -265,21 +428,6 @@ def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, f
     ]
     ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
     return make_table(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
-
-
-def unit_row_table(title: str, matrix: Matrix, *, heads: tuple[str, ...] = (), first: str = "along", notes: tuple[str, ...] = ()) -> Table:
-    """A matrix whose entries share a unit along each row: the unit stands in a column of its own.
-
-    >>> unit_row_table("a", Matrix(np.array([[2e-6]]), ("x",), ("low",), (("m",),))).texts()
-    [['along', 'unit', 'low'], ['x', 'um', '2']]
-    """
-    rows: list[tuple[Content, ...]] = []
-    values, units = first_design(matrix.values, 2), _entry_units(matrix)
-    for name, line, unit in zip(matrix.rows, values, units, strict=True):
-        alike = np.concatenate([other for other, its in zip(values, units, strict=True) if its[0] == unit[0]])
-        form = display_unit_of(unit[0], float(np.max(np.abs(alike[np.isfinite(alike)]), initial=0.0)))
-        rows.append((Cell(name, Mark.STRONG), _unit(form), *number_cells(line, form)))
-    return make_table(title, [first, "unit", *(Column(head) for head in heads or matrix.columns)], rows, notes=notes)
 
 
 def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -295,15 +443,6 @@ def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
 def _row_head(name: str, form: DisplayUnit) -> Cell:
     unit = _unit(form)
     return Cell(f"{name} [{unit}]" if unit else name, Mark.STRONG)
-
-
-def _entries_with_units(title: str, matrix: Matrix, kept: Array, notes: tuple[str, ...]) -> Table:
-    units = _entry_units(matrix)
-    lines = [
-        [Cell(name, Mark.STRONG), *(_with_unit(value, unit) for value, unit in zip(row, line, strict=True))]
-        for name, row, line in zip(matrix.rows, kept, units, strict=True)
-    ]
-    return make_table(title, [Column("", numeric=False), *(Column(name) for name in matrix.columns)], lines, notes=notes)
 
 
 _ENDS = ("m", "rad", "N", "N m", "K", "K/m", "V", "1")
@@ -340,10 +479,6 @@ def _entry_units(matrix: Matrix) -> tuple[tuple[str, ...], ...]:
     return matrix.unit
 
 
-def _form(unit: str, *, fine: bool) -> DisplayUnit:
-    return DisplayUnit("mrad", 1e3) if unit == "rad" and not fine else preferred_unit(unit)
-
-
 def _unit(form: DisplayUnit) -> str:
     return "" if form.unit == "1" else form.unit
 
@@ -353,8 +488,8 @@ def _entry(value: float) -> Cell:
     return Cell(text, _mark_of(text))
 
 
-def _with_unit(value: float, unit: str) -> Cell:
-    text = format_value(float(value), unit)
+def _with_unit(value: float, unit: str, digits: int) -> Cell:
+    text = format_value(value, unit, digits)
     bare = text.split()[0]
     return Cell(bare if bare in ("0", NO_VALUE) else text, _mark_of(bare))
 

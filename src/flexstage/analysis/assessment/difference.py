@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from flexstage.analysis.workspace.buckling import Buckling
 from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import SingleAxis
 from flexstage.analysis.workspace.workspace import Workspace
+from flexstage.base.record import INNER, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import SHARE
 from flexstage.mechanism.addresses.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -36,13 +37,20 @@ class KeyFigure:
 class Change:
     """A key figure before and after; `None` where it exists on one side only."""
 
-    name: str
+    TABLE: ClassVar[Layout] = Layout("Changes of key figures", "name old new difference relative")
+
+    name: Annotated[str, Heading("key figure")]
     unit: str
-    old: float | None
-    new: float | None
+    old: Annotated[float | None, UnitIn("unit")]
+    new: Annotated[float | None, UnitIn("unit")]
 
     @property
-    def relative(self) -> Annotated[float | None, SHARE]:
+    def difference(self) -> Annotated[float | None, INNER, UnitIn("unit"), Heading(digits=4)]:
+        """New less old; None where either is missing."""
+        return None if self.old is None or self.new is None else self.new - self.old
+
+    @property
+    def relative(self) -> Annotated[float | None, SHARE, Heading(digits=3)]:
         """New over old less one; None where that has no meaning."""
         return None if self.old is None or self.new is None or self.old == 0.0 else self.new / self.old - 1.0
 

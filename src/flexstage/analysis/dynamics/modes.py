@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
-from flexstage.base.record import INNER, VIEW
-from flexstage.base.units.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW, Heading, Layout
+from flexstage.base.units.quantity import FREQUENCY, SHARE
 from flexstage.models.batch.choice import Choice, choose, compliance_root, participation, platform_rows
 from flexstage.models.linear.eigen import ALL_MODES, Eigen, lowest_modes, sign_weights
 from flexstage.models.linear.model import LinearModel
@@ -39,15 +39,27 @@ class Mode:
     kinetic energy of every body and link from one per cent, largest first.
     """
 
-    number: int
+    TABLE: ClassVar[Layout] = Layout("Modes", "number frequency name platform_share compliance_share plane role")
+
+    number: Annotated[int, Heading("mode")]
     frequency: Annotated[float, FREQUENCY]
     name: str
-    platform_share: float
-    compliance_share: float
+    platform_share: Annotated[float, SHARE, Heading("kinetic-energy fraction")]
+    compliance_share: Annotated[float, SHARE]
     in_plane: bool
     platform: bool
     local: bool
     energy_share: Mapping[str, float]
+
+    @property
+    def plane(self) -> Annotated[str, INNER]:
+        """Whether it is in the plane."""
+        return "in plane" if self.in_plane else "out of plane"
+
+    @property
+    def role(self) -> Annotated[str, INNER]:
+        """Whose mode it is."""
+        return "platform" if self.platform else "local, near" if self.local else "local"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,9 +93,10 @@ class Modes(InNotebook):
     @property
     def modes(self) -> Annotated[tuple[Mode, ...], VIEW]:
         """The listed modes one by one, ascending, of the first design."""
-        return tuple(self._mode(index) for index in range(self.listed))
+        return tuple(map(self.mode, range(self.listed)))
 
-    def _mode(self, index: int) -> Mode:
+    def mode(self, index: int) -> Mode:
+        """One mode of the first design."""
         told = (self.frequencies, self.share, self.compliance_share)
         frequency, share, compliance = (float(first_design(each, 1)[index]) for each in told)
         energies = first_design(self.energies, 2)[:, index]

@@ -12,7 +12,8 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design
-from flexstage.base.units.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, STIFFNESS
+from flexstage.base.record import INNER, Heading, Layout
+from flexstage.base.units.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, SHARE, STIFFNESS
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
@@ -31,9 +32,26 @@ class DirectionalStiffness:
     The angle is counted from x towards y, in [0, pi); NaN where all directions are alike to 1e-9.
     """
 
+    TABLE: ClassVar[Layout] = Layout("Principal stiffnesses in the plane", "stiffest softest angle spread", head="other DOFs")
+
     tensor: Matrix
     principal: Annotated[Array, STIFFNESS]
-    angle: Annotated[Array, ANGLE]
+    angle: Annotated[Array, ANGLE, Heading("stiffest along", digits=4)]
+
+    @property
+    def stiffest(self) -> Annotated[Array, INNER, STIFFNESS]:
+        """The larger principal stiffness (...) [N/m]."""
+        return self.principal[..., 0]
+
+    @property
+    def softest(self) -> Annotated[Array, INNER, STIFFNESS]:
+        """The smaller principal stiffness (...) [N/m]."""
+        return self.principal[..., 1]
+
+    @property
+    def spread(self) -> Annotated[Array, INNER, SHARE, Heading(digits=3)]:
+        """Their difference, of the larger one (...)."""
+        return 1.0 - self.softest / self.stiffest
 
     def along(self, angle: Number) -> Array:
         """Stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n)."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.base.record import INNER, Heading
 from flexstage.base.units.quantity import RATIO, STIFFNESS
 
 
@@ -30,7 +31,7 @@ class UnitOutput:
     ideal_gain: float
 
     @cached_property
-    def axial(self) -> Annotated[float, STIFFNESS]:
+    def axial(self) -> Annotated[float, STIFFNESS, Heading("axial stiffness")]:
         """Stiffness along the direction, all else held [N/m]: n^T K n.
 
         >>> values = np.diag([10.0, 2.0, 3.0, 1.0, 1.0, 1.0])
@@ -47,6 +48,16 @@ class UnitOutput:
         across = np.linalg.svd(self.direction[None, :])[2][1:]
         softest, stiffest = np.linalg.eigvalsh(across @ self._translations @ across.T)
         return float(softest), float(stiffest)
+
+    @property
+    def softest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("softest lateral", varying=True)]:
+        """The smaller stiffness across the direction [N/m]."""
+        return self.lateral[0]
+
+    @property
+    def stiffest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("stiffest lateral", varying=True)]:
+        """The larger stiffness across the direction [N/m]."""
+        return self.lateral[1]
 
     @property
     def _translations(self) -> Array:

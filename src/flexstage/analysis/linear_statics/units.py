@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.linear_statics.unit_output import UnitOutput
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Vector
-from flexstage.base.units.quantity import COMPLIANCE, STIFFNESS
+from flexstage.base.record import Heading, Layout
+from flexstage.base.units.quantity import COMPLIANCE, SHARE, STIFFNESS
 from flexstage.mechanism.assembly.expand import copies, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
@@ -36,9 +37,16 @@ class UnitResult(UnitOutput):
     leaves out of its gain, freedom by freedom.
     """
 
-    loss: float
+    TABLE: ClassVar[Layout] = Layout(
+        "Isolated units",
+        "copy axial softest_lateral stiffest_lateral ideal_gain gain loss series",
+        head="unit",
+        notes=("Actuators fixed, output guided along its direction.",),
+    )
+
+    loss: Annotated[float, SHARE]
     load_compliance: Annotated[float, COMPLIANCE]
-    series: Annotated[float | None, STIFFNESS]
+    series: Annotated[float | None, STIFFNESS, Heading("in actuator coordinates")]
     lever: LeverStiffness | None
     omitted: Omitted | None
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, LowerBoundError, refuse
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import first_design
-from flexstage.base.record import INNER
+from flexstage.base.record import INNER, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, RATIO
 from flexstage.base.units.unit import quantity_of_unit, show
 from flexstage.mechanism.assembly.expand import expand
@@ -80,13 +80,19 @@ class CaseFactor:
     factor up to which the stage is stable, NaN where that is not known.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Load cases and stroke ends",
+        "load place factor bound kind buckling_mode why",
+        notes=("Each load alone, all else constant; actuators are free where a force brings the stage to the operating point.",),
+    )
+
     load: str
-    place: str
-    factor: Annotated[float, RATIO]
+    place: Annotated[str, Heading("operating point")]
+    factor: Annotated[float, RATIO, Heading("load factor", digits=5)]
     kind: str
     buckling_mode: str
-    why: str
-    bound: Annotated[float, RATIO] = np.nan
+    why: Annotated[str, Heading("not followed because")]
+    bound: Annotated[float, RATIO, Heading("stable up to", digits=5)] = np.nan
     found: Annotated[Critical | None, INNER] = None
 
 

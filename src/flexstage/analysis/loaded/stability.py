@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Annotated, TypeAlias, TypeVar, cast
+from typing import Annotated, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
 import scipy
@@ -19,8 +19,9 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, first_design, stack
+from flexstage.base.record import Heading, Layout
 from flexstage.base.sparse import Rows, Sparse, below, few
-from flexstage.base.units.quantity import LENGTH, RATIO
+from flexstage.base.units.quantity import LENGTH, RATIO, Bound
 from flexstage.beams.compliance import locked_freedoms as locked_by
 from flexstage.beams.geometric import ENDS, Geometric, geometric
 from flexstage.beams.mass import mass
@@ -58,8 +59,14 @@ class Stability:
     much the dead load stiffens at most, as a share of the stiffness. `moving` names the bodies that move most as the dead load gives way.
     """
 
-    dead: Annotated[Array, RATIO]
-    worst: Annotated[Array, RATIO]
+    TABLE: ClassVar[Layout] = Layout(
+        "Buckling of the stage",
+        "dead worst",
+        notes=("Load factor at which the stage buckles as a whole: linearised, every column with its real ends.",),
+    )
+
+    dead: Annotated[Array, RATIO, Bound(low=1.0), Heading("dead load", digits=4, infinite="none", safe=1.5)]
+    worst: Annotated[Array, RATIO, Bound(low=1.0), Heading("dead load with the worst strokes", digits=4, infinite="none", safe=1.5)]
     strokes: Annotated[Array, LENGTH]
     stiffens: Annotated[Array, RATIO]
     moving: tuple[str, ...]

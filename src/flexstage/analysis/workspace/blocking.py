@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.record import VIEW, Along, Heading
+from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, FORCE, STIFFNESS
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -28,13 +28,15 @@ class StackLine(InNotebook):
     stage's at its ends, other strokes held; `travel` [m] and `force` [N] (compression) the crossing of both lines.
     """
 
+    TABLE: ClassVar[Layout] = Layout("Stacks against the stage")
+
     actuators: tuple[str, ...]
-    free: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("free stroke", digits=4)]
-    travel: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("stroke in the stage", digits=4)]
-    blocking: Annotated[Array, FORCE, Along("actuators"), Heading("blocking force", digits=4)]
+    free: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("free displacement", digits=4)]
+    travel: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("displacement in the stage", digits=4)]
+    blocking: Annotated[Array, FORCE, Along("actuators"), Heading("blocked force", digits=4)]
     force: Annotated[Array, FORCE, Along("actuators"), Heading("force in the stage", digits=4)]
     stiffness: Annotated[Array, STIFFNESS, Along("actuators"), Heading("own stiffness", digits=4)]
-    stage_stiffness: Annotated[Array, STIFFNESS, Along("actuators"), Heading("stage's stiffness", digits=4)]
+    stage_stiffness: Annotated[Array, STIFFNESS, Along("actuators"), Heading("stage stiffness", digits=4)]
     provenance: str
 
 
@@ -45,6 +47,12 @@ class PlatformLine(InNotebook):
     `travel` [m, rad] without load (both ways), `stiffness` [N/m, N m/rad] of the platform against a load along this coordinate alone,
     `blocking` [N, N m] the load that brings it back to zero.
     """
+
+    TABLE: ClassVar[Layout] = Layout(
+        "Forces of the platform",
+        "table",
+        notes=("A command along one coordinate ends where the first actuator does; the load acts along it alone.",),
+    )
 
     coordinates: tuple[str, ...]
     travel: Array
@@ -57,7 +65,7 @@ class PlatformLine(InNotebook):
         return self.blocking / (self.stiffness + stiffness)
 
     @property
-    def table(self) -> Annotated[Matrix, VIEW]:
+    def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
         """Rows are the coordinates, columns travel, stiffness and blocking."""
         moves = [TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
         loads = [WRENCH_UNITS[COMPONENTS.index(name)] for name in self.coordinates]

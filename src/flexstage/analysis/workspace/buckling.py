@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -14,8 +14,8 @@ from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, index_of_largest
-from flexstage.base.record import VIEW, Along
-from flexstage.base.units.quantity import RATIO
+from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
+from flexstage.base.units.quantity import RATIO, Bound
 from flexstage.beams.compliance import law_of
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
@@ -45,16 +45,25 @@ class Buckling(InNotebook):
     columns and bodies together.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Buckling of single parts",
+        "table ends",
+        head="part",
+        order="factor",
+        merged=True,
+        notes=("Euler's load of each part, its ends as listed.",),
+    )
+
     links: tuple[str, ...]
-    critical: Array
-    compression: Array
+    critical: Annotated[Array, Heading("critical load", digits=4)]
+    compression: Annotated[Array, Heading(digits=4)]
     length: Array
     ends: Annotated[tuple[Ends, ...], Along("links")]
     provenance: str
     stage: Stability
 
     @property
-    def factor(self) -> Array:
+    def factor(self) -> Annotated[Array, INNER, Bound(low=1.0), Heading("load factor", digits=4, infinite="in tension", safe=1.5)]:
         """By how much the compression could grow (..., L); infinite for parts in tension."""
         pressed = self.compression > 0.0
         return np.where(pressed, self.critical / np.where(pressed, self.compression, 1.0), np.inf)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, stack
-from flexstage.base.record import VIEW
+from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.mechanism.assembly.expand import expand
@@ -41,6 +41,8 @@ class Clearance(InNotebook):
     `envelope` (..., 3) [m] or `None`; `extreme` names the outlines that reach farthest (low x, y, z, high x, y, z; first design).
     """
 
+    TABLE: ClassVar[Layout] = Layout("Clearance", "table reached_by", head="axis")
+
     intrusions: tuple[Intrusion, ...]
     low: Array
     high: Array
@@ -54,13 +56,24 @@ class Clearance(InNotebook):
         return self.high - self.low
 
     @property
-    def table(self) -> Annotated[Matrix, VIEW]:
+    def table(self) -> Annotated[Matrix, VIEW, Heading(unit="mm")]:
         """Rows are the axes; columns low, high, size (and envelope)."""
         columns = [self.low, self.high, self.size]
         names = ["low", "high", "size"]
         if self.envelope is not None:
             columns, names = [*columns, np.broadcast_to(self.envelope, self.low.shape)], [*names, "envelope"]
         return Matrix(np.stack(columns, axis=-1), _AXES, tuple(names), "m")
+
+    @property
+    def reached_by(self) -> Annotated[tuple[str, ...], INNER]:
+        """The outlines at both ends of each axis."""
+        return tuple(f"{low}, {high}" for low, high in zip(self.extreme[:3], self.extreme[3:], strict=True))
+
+    @property
+    def notes(self) -> Annotated[tuple[str, ...], INNER]:
+        """The outlines in the opening, the edges beyond the envelope."""
+        said = tuple(f"{each.where}: {each.what}." for each in self.findings)
+        return said or (() if self.opening is None else ("Nothing enters the clear opening.",))
 
     @property
     def findings(self) -> Annotated[tuple[Finding, ...], VIEW]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, stack
-from flexstage.base.record import Along, Heading
+from flexstage.base.record import Along, Heading, Layout
 from flexstage.base.units.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -22,6 +22,8 @@ class Drive(InNotebook):
 
     Linear: the free stroke is proportional to the voltage; hysteresis and creep are left to the loop.
     """
+
+    TABLE: ClassVar[Layout] = Layout("Drive")
 
     actuators: tuple[str, ...]
     gain: Annotated[Array, PIEZO_GAIN, Along("actuators"), Heading(digits=5, unit="um/V")]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design, magnitude
-from flexstage.base.record import VIEW, Axes
+from flexstage.base.record import INNER, VIEW, Axes, Heading, Layout
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.channels import see
@@ -27,7 +27,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.voice_coil import VoiceCoil
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, Frame, twist_transform
+from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, TWIST_UNITS, Frame, twist_transform
 
 _ROUNDING, _NONE = 1e-12, 1e-9
 
@@ -47,6 +47,13 @@ class ForceWorkspace(InNotebook):
     ideal motions that no input moves.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Reach",
+        "held held_briefly limited_by",
+        head="along",
+        notes=("Elastic motion, either way. Held: without time limit; short use: for a coil's share of time, `duty`.",),
+    )
+
     point: str
     coordinates: tuple[str, ...]
     alone: tuple[bool, ...]
@@ -61,12 +68,12 @@ class ForceWorkspace(InNotebook):
     provenance: str
 
     @property
-    def held(self) -> Annotated[Array, VIEW, Axes("coordinates")]:
+    def held(self) -> Annotated[Array, VIEW, MOTION, Axes("coordinates"), Heading("held, both ways")]:
         """The least bound of every coordinate (..., f) [m, rad], for ever; NaN where no limit is known."""
         return _least(self.bounds.values)
 
     @property
-    def held_briefly(self) -> Annotated[Array, VIEW, Axes("coordinates")]:
+    def held_briefly(self) -> Annotated[Array, VIEW, MOTION, Axes("coordinates"), Heading("short use")]:
         """The least bound of every coordinate (..., f) [m, rad] in short use."""
         return _least(self.short.values)
 
@@ -75,6 +82,20 @@ class ForceWorkspace(InNotebook):
         """The cause that ends each coordinate's motion, on the first design; empty where no limit is known."""
         first = np.nan_to_num(np.real(first_design(self.bounds.values, 2)), nan=np.inf)
         return tuple(self.bounds.columns[int(np.argmin(row))] if np.isfinite(np.min(row, initial=np.inf)) else "" for row in first)
+
+    @property
+    def holding(self) -> Annotated[Matrix, INNER]:
+        """Current, voltage, power and temperature rise of each coil at the travel held along each coordinate (first design)."""
+        needs = (self.current, self.voltage, self.power, self.rise)
+        values = np.stack([np.real(first_design(need.values, 2)).ravel() for need in needs], axis=-1)
+        rows = tuple(f"{name}, {coil}" for name in self.coordinates for coil in self.current.columns)
+        return Matrix(values, rows, ("current", "R i", "heat", "temperature rise"), (("A", "V", "W", "K"),) * len(rows))
+
+    @property
+    def notes(self) -> Annotated[tuple[str, ...], INNER]:
+        """Motions that inputs do not move alone, or not at all."""
+        coupled = () if all(self.alone) else ("Fewer inputs than ideal motions: the other coordinates move freely.",)
+        return (*coupled, *([f"No actuator moves {', '.join(self.unmoved)}."] if self.unmoved else []))
 
 
 def _least(bounds: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.record import INNER, VIEW, Along
+from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
+from flexstage.base.units.quantity import SHARE, Bound
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.assembly.sight import Sight
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
@@ -33,15 +34,22 @@ class GaugeRange(InNotebook):
     holds everywhere; NaN: it does not even hold on the axis, or the gauge does not stand between platform and ground).
     """
 
+    TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")
+
     gauges: tuple[str, ...]
     command: Annotated[Mapping[str, Number], MOTION]
-    swing: Array
-    limit: Array
-    radius: Array
-    largest_here: Array
-    largest_anywhere: Array
+    swing: Annotated[Array, Heading("largest reading")]
+    limit: Annotated[Array, Heading("half range")]
+    radius: Annotated[Array, Heading(unit="mm")]
+    largest_here: Annotated[Array, Heading("largest radius, same angle", unit="mm", digits=4, infinite="any")]
+    largest_anywhere: Annotated[Array, Heading("largest radius, any angle", unit="mm", digits=4, infinite="any")]
     provenance: str
     units: Annotated[tuple[str, ...], INNER] = ()
+
+    @property
+    def used(self) -> Annotated[Array, INNER, SHARE, Bound(high=1.0), Along("gauges")]:
+        """Share of half the range that the corner takes (..., g)."""
+        return self.swing / self.limit
 
     @property
     def fits(self) -> Annotated[Array, Along("gauges")]:
@@ -66,6 +74,12 @@ class PoseResolution(InNotebook):
     sum |S_ij| r_j; `rms`: independently, (sum S_ij^2 r_j^2)^(1/2); `noise` the rms of the stated noise densities over the gauges'
     bandwidths (NaN where none is stated).
     """
+
+    TABLE: ClassVar[Layout] = Layout(
+        "Pose resolution of the gauges",
+        "table",
+        notes=("Worst: all gauges one step off with the worst signs. Rms: independent steps. Noise: rms of the gauge noise.",),
+    )
 
     inverse: Matrix
     gauge_steps: Array

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, Vector, stack
-from flexstage.base.record import Along
-from flexstage.base.units.quantity import FORCE, RATIO
+from flexstage.base.record import Along, Heading, Layout
+from flexstage.base.units.quantity import FORCE, SHARE, Bound
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -31,11 +31,17 @@ _ROUNDING = 1e-9
 class LoadRange(InNotebook):
     """Compression [N] of each stack over the strokes: `min_force`, `max_force`; `usage` of its maximum load, `pull` over what holds it."""
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Axial forces of the stacks over all strokes",
+        "min_force max_force usage pull",
+        notes=("From no voltage, dead load included, preload not counted; negative: tension, used of preload and tensile limit.",),
+    )
+
     actuators: tuple[str, ...]
-    min_force: Annotated[Array, FORCE, Along("actuators")]
-    max_force: Annotated[Array, FORCE, Along("actuators")]
-    usage: Annotated[Array, RATIO, Along("actuators")]
-    pull: Annotated[Array, RATIO, Along("actuators")]
+    min_force: Annotated[Array, FORCE, Along("actuators"), Heading("smallest", digits=4)]
+    max_force: Annotated[Array, FORCE, Along("actuators"), Heading("largest", digits=4)]
+    usage: Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used in compression")]
+    pull: Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used in tension")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +53,17 @@ class LoadShare(InNotebook):
     `reference` (..., 3) the platform's reference point [m].
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Axial forces of the stacks", "loads preload tensile maximum", head="actuator", notes=("Compression is positive.",)
+    )
+
     actuators: tuple[str, ...]
-    loads: Matrix
+    loads: Annotated[Matrix, Heading(digits=4)]
     share: Matrix
     stroke: Matrix
-    maximum: Annotated[Array, FORCE, Along("actuators")]
+    maximum: Annotated[Array, FORCE, Along("actuators"), Heading("limit")]
     preload: Annotated[Array, FORCE, Along("actuators")]
-    tensile: Annotated[Array, FORCE, Along("actuators")]
+    tensile: Annotated[Array, FORCE, Along("actuators"), Heading("tensile limit")]
     reference: Array
     provenance: str
 

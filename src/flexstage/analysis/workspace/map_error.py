@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
-from flexstage.base.record import VIEW
+from flexstage.base.record import VIEW, Layout
 from flexstage.base.units.quantity import LENGTH
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -31,6 +31,10 @@ class MapError(InNotebook):
     `strokes` (k, ..., n) [m] tried, `errors` (k, ..., 6) [m, rad] there; `worst` (..., 6) the largest by axis, `worst_strokes` (..., 6, n)
     where, 0 and the first where nothing but rounding is left; `residual` (...) [m] how far redundant constraints disagree at worst.
     """
+
+    TABLE: ClassVar[Layout] = Layout(
+        "Error of the linear map", "table", notes=("Finite less linear kinematics at {self.points} combinations of strokes.",)
+    )
 
     actuators: tuple[str, ...]
     strokes: Array

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
@@ -14,7 +14,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import VIEW
+from flexstage.base.record import VIEW, Layout
 from flexstage.base.units.quantity import RATIO
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -28,6 +28,8 @@ class Polytope(InNotebook):
 
     `vertices` (..., v, f) [m, rad] (padded with NaN where redundant strokes leave designs with fewer), `volume` (...) in `volume_unit`.
     """
+
+    TABLE: ClassVar[Layout] = Layout("Reachable extents, other coordinates free", "extent")
 
     coordinates: tuple[str, ...]
     normals: Array

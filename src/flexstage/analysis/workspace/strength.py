@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, ClassVar, TypeAlias
 
 import numpy as np
 
@@ -14,8 +14,8 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
-from flexstage.base.record import INNER, VIEW
-from flexstage.base.units.quantity import RATIO
+from flexstage.base.record import INNER, VIEW, Heading, Layout
+from flexstage.base.units.quantity import RATIO, Bound
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -34,6 +34,15 @@ class HingeStress(InNotebook):
     stress), `governing` names which of them, on the first design.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Stress in the hinges",
+        "table",
+        head="hinge",
+        order="safety",
+        merged=True,
+        notes=("Von Mises stress at the worst corner of all strokes from no voltage, dead load included; peak: with the notch factor.",),
+    )
+
     links: tuple[str, ...]
     actuators: tuple[str, ...]
     nominal: Array
@@ -46,12 +55,12 @@ class HingeStress(InNotebook):
     governing: tuple[str, ...] = ()
 
     @property
-    def allowed(self) -> Annotated[Array, INNER]:
+    def allowed(self) -> Annotated[Array, VIEW]:
         """The stress that counts as the limit (..., L) [Pa]."""
         return self.yield_stress if self.limit is None else self.limit
 
     @property
-    def safety(self) -> Array:
+    def safety(self) -> Annotated[Array, INNER, Bound(low=1.0), Heading("safety factor", digits=4, safe=1.5)]:
         """The limit over peak stress (..., L); infinite where nothing is stressed."""
         loaded = self.peak != 0.0
         return np.where(loaded | np.isnan(self.allowed), self.allowed / np.where(loaded, self.peak, 1.0), np.inf)
@@ -74,12 +83,19 @@ class HingeStress(InNotebook):
         return tuple(link for link, missing in zip(self.links, np.asarray(gone), strict=True) if missing)
 
     @property
+    def notes(self) -> Annotated[tuple[str, ...], INNER]:
+        """Links that were not checked, and limits other than yield."""
+        other = (f"{link} {name}" for link, name in zip(self.links, self.governing, strict=False) if name not in ("", "yield stress"))
+        said = {"Not checked": self.unchecked, "Yield stress not stated": self.unknown, "Limits other than yield": tuple(other)}
+        return tuple(f"{text}: {', '.join(names)}." for text, names in said.items() if names)
+
+    @property
     def worst_strokes(self) -> Annotated[Matrix, VIEW]:
         """The strokes at which each link is stressed most."""
         return Matrix(self.strokes, self.links, self.actuators, "m")
 
     @property
-    def table(self) -> Annotated[Matrix, VIEW]:
+    def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
         """Rows are the links, columns nominal, peak, yield (where another limit governs, that) and safety."""
         values = np.stack(np.broadcast_arrays(self.nominal, self.peak, self.allowed, self.safety), axis=-1)
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.record import VIEW, Along, Heading
+from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.incidence import layout, twist_at
@@ -67,10 +67,12 @@ class SingleAxis(InNotebook):
     `limiting` names the actuator, or stop (`stops/end`), that ends each stroke (first design, `high` side).
     """
 
+    TABLE: ClassVar[Layout] = Layout("Single-axis strokes", "table limiting", notes=("One coordinate at a time, the others at zero.",))
+
     coordinates: tuple[str, ...]
     low: Array
     high: Array
-    limiting: Annotated[tuple[str, ...], Along("coordinates")]
+    limiting: Annotated[tuple[str, ...], Along("coordinates"), Heading("limited by")]
     at: str
     provenance: str
 
@@ -95,9 +97,11 @@ class Utilisation(InNotebook):
     that the strokes reach stand among the actuators (`stops/end`), their gaps in the place of strokes.
     """
 
+    TABLE: ClassVar[Layout] = Layout("Simultaneous strokes", "demand available ratio")
+
     actuators: tuple[str, ...]
     command: Annotated[Mapping[str, Number], MOTION]
-    demand: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("asked")]
+    demand: Annotated[Array, DISPLACEMENT, Along("actuators"), Heading("required")]
     available: Annotated[Array, DISPLACEMENT, Along("actuators")]
     provenance: str
 

@@ -36,12 +36,11 @@ from flexstage.show.command.options import (
     text_option,
 )
 from flexstage.show.command.values import motions, names
-from flexstage.show.table import Table, row_table
+from flexstage.show.table import Table, result_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
 from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
-from flexstage.show.tables.strength import strength_tables
 
 Commands: TypeAlias = Annotated[
     list[str] | None,
@@ -113,15 +112,11 @@ def _small_text(small: SecondOrder | None) -> str | None:
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
     """The tables of motion first, then those of strength."""
-    yield tables.stroke_table(workspace)
-    yield None if workspace.worst_case is None else tables.corner_table(workspace.worst_case)
-    yield None if workspace.polytope is None else tables.extent_table(workspace.polytope)
-    yield None if workspace.map_error is None else tables.map_error_table(workspace.map_error)
-    yield None if workspace.drive is None else row_table("Drive", workspace.drive)
-    yield None if workspace.gauges is None else tables.gauge_range_table(workspace.gauges)
-    yield None if workspace.resolution is None else tables.resolution_table(workspace.resolution)
-    yield None if workspace.clearance is None else tables.clearance_table(workspace.clearance)
-    yield from strength_tables(workspace)
+    yield from tables.stroke_tables(workspace)
+    yield from map(result_table, (workspace.polytope, workspace.map_error, workspace.drive))
+    yield from tables.gauge_tables(workspace)
+    yield result_table(workspace.clearance)
+    yield from tables.strength_tables(workspace)
 
 
 def drift(

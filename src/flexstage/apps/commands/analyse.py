@@ -23,14 +23,14 @@ from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
-from flexstage.show.table import Table
-from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
-from flexstage.show.tables.change import change_table, set_table
+from flexstage.show.table import Table, result_table
+from flexstage.show.tables import errors, kinematics, lost_motion, statics, workspace
+from flexstage.show.tables.change import set_table
 from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.overview import closing_text, load_line, overview_tables, small_line, stage_text
 from flexstage.show.tables.requirements import verdict_table
-from flexstage.show.tables.units import omitted_table, unit_table
+from flexstage.show.tables.units import omitted_table
 
 _WARNINGS, _WIDTH = 3, 80
 """Lines of warnings that the short form shows, of a terminal of that width."""
@@ -141,10 +141,10 @@ def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table |
     yield closing_text(analysis, whole=True)
 
 
-def _change_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table]:
+def _change_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | None]:
     if compared is not None:
         yield set_table(compared.stated, analysis.mechanism, compared.addresses)
-        yield change_table(compared.figures)
+        yield result_table(compared.figures)
 
 
 def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
@@ -158,7 +158,7 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
         yield statics.stiffness_table(analysis.statics)
         yield None if analysis.freedoms is None else statics.freedom_stiffness_table(analysis.freedoms)
         yield statics.principal_table(analysis.statics)
-    yield unit_table(analysis.units) if analysis.units else None
+    yield result_table(analysis.units or {})
     if analysis.lost_motion is not None:
         yield lost_motion.loss_table(analysis.lost_motion)
         yield lost_motion.budget_table(analysis.lost_motion)
@@ -168,10 +168,10 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     if analysis.force_workspace is not None:
         yield from force_workspace_tables(analysis.force_workspace)
     if analysis.workspace is not None:
-        yield workspace.stroke_table(analysis.workspace)
-        yield from strength.strength_tables(analysis.workspace)
+        yield from workspace.stroke_tables(analysis.workspace)
+        yield from workspace.strength_tables(analysis.workspace)
     elif analysis.buckling is not None:
-        yield strength.buckling_table(analysis.buckling)
+        yield from map(result_table, (analysis.buckling.stage, analysis.buckling))
     yield None if analysis.drift is None else errors.drift_table(analysis.drift)
     if analysis.error_budget is not None:
         yield from errors.error_budget_tables(analysis.error_budget)

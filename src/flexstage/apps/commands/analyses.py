@@ -36,7 +36,7 @@ from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
-from flexstage.show.table import Table
+from flexstage.show.table import Table, result_table
 from flexstage.show.tables import kinematics as motion_tables
 from flexstage.show.tables import lost_motion as loss_tables
 from flexstage.show.tables import statics as static_tables
@@ -84,8 +84,7 @@ def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
     yield motion_tables.gauge_table(kinematics) if kinematics.gauges else None
     yield motion_tables.motion_table(kinematics)
     yield motion_tables.freedom_table(kinematics)
-    yield motion_tables.idle_table(kinematics)
-    yield motion_tables.redundant_table(kinematics)
+    yield from map(result_table, (kinematics.idle, kinematics.redundant))
 
 
 def stiffness(  # noqa: PLR0913 (its options)

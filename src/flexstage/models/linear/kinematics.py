@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding, join_findings, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design
-from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.record import INNER, VIEW, Called, Heading, Layout
 from flexstage.base.units.quantity import LENGTH
 from flexstage.models.linear.blockage import Blockage
 from flexstage.parts.freedom import Freedom
@@ -23,15 +23,19 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 class Idle:
     """A freedom that neither stroke nor platform feels (a strut spinning about itself): the `bodies` that move, the `links` that deform."""
 
-    bodies: tuple[str, ...]
-    links: tuple[str, ...]
+    TABLE: ClassVar[Layout] = Layout("Free internal modes (zero stiffness)", "bodies links")
+
+    bodies: Annotated[tuple[str, ...], Heading("bodies that move")]
+    links: Annotated[tuple[str, ...], Heading("links that deform")]
 
 
 @dataclass(frozen=True)
 class Redundant:
     """A redundant constraint: the locked freedoms (`B1/left.y`) of which one is superfluous."""
 
-    constraints: tuple[str, ...]
+    TABLE: ClassVar[Layout] = Layout("Redundant constraints", "constraints")
+
+    constraints: Annotated[tuple[str, ...], Heading("locked DOFs, one of them superfluous")]
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from flexstage.show.display import DisplayUnit, display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, style_context
 from flexstage.show.scene.silhouette import hull
 from flexstage.show.table import first_design
-from flexstage.show.tables.workspace import unit_of
+from flexstage.spatial.frame import MOTION
 
 _PAIRS = (("x", "y"), ("x", "z"), ("z", "rx"), ("rx", "ry"), ("y", "z"), ("x", "rz"))
 _PANELS = 4
@@ -73,7 +73,7 @@ def _panel(axes: Any, workspace: Workspace, across: str, up: str) -> None:
     vertices = first_design(polytope.vertices, 2)[:, indices]
     vertices = vertices[np.all(np.isfinite(vertices), axis=1)]
     x, y = (
-        _Shown(name, display_unit_of(unit_of(name), float(largest)))
+        _Shown(name, display_unit_of(MOTION.unit(name), float(largest)))
         for name, largest in zip((across, up), np.max(np.abs(vertices), axis=0), strict=True)
     )
     outline = hull(vertices * [x.unit.factor, y.unit.factor])

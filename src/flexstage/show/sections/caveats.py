@@ -6,7 +6,7 @@ from flexstage.analysis.caveats import caveats
 from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.page import Section, section
-from flexstage.show.tables.caveats import default_table, warning_table
+from flexstage.show.tables.caveats import warning_table
 
 
 def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Section | None:
@@ -17,4 +17,5 @@ def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Sect
     """
     found = caveats(mechanism)
     warnings = (*found.warnings, *more)
-    return section("Warnings" if warnings else "Taken by default", [warning_table(warnings), default_table(found.defaults)])
+    taken = "Taken by default"
+    return section("Warnings" if warnings else taken, [warning_table(warnings), warning_table(found.defaults, taken)])

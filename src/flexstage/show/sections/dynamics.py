@@ -99,7 +99,7 @@ def response_section(analysis: Analysis) -> Section | None:
         drawn = to_svg(figure, "ground", "Transmissibility from the ground to the platform")
         caption = "Transmissibility: absolute motion of the platform per absolute motion of the ground."
         blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
-    known = [item for item in (response, ground) if item is not None]
+    known = [item for item in (response, ground) if item is not None and np.size(item.values)]
     if known:
         blocks.append(Folded("Gains and peaks", tuple(response_table(item) for item in known)))
     return section("Frequency responses", blocks)

@@ -8,16 +8,15 @@ from flexstage.show.figures.budget import energy_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Abreast, Block, Folded, Picture, Prose, Section, fold, section
+from flexstage.show.table import result_table
 from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.kinematics import (
     freedom_table,
     gauge_table,
-    idle_table,
     jacobian_table,
     mapping_table,
     mobility_table,
     motion_table,
-    redundant_table,
 )
 from flexstage.show.tables.lost_motion import (
     budget_table,
@@ -37,11 +36,11 @@ from flexstage.show.tables.statics import (
     principal_table,
     stiffness_table,
 )
-from flexstage.show.tables.units import lever_table, omitted_table, unit_table
+from flexstage.show.tables.units import lever_table, omitted_table
 
 
 def kinematics_section(analysis: Analysis) -> Section | None:
-    """Mobility, mappings, idle freedoms and redundant constraints.
+    """Mobility, mappings, free internal modes and redundant constraints.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -60,8 +59,8 @@ def kinematics_section(analysis: Analysis) -> Section | None:
             mobility_table(kinematics),
             *_mappings(kinematics),
             motion_table(kinematics),
-            Folded("Freedoms taken as free", (freedom_table(kinematics),)),
-            fold("Idle freedoms and redundant constraints", idle_table(kinematics), redundant_table(kinematics)),
+            Folded("DOFs taken as free", (freedom_table(kinematics),)),
+            fold("Free internal modes and redundant constraints", result_table(kinematics.idle), result_table(kinematics.redundant)),
         ],
     )
 
@@ -93,8 +92,9 @@ def stiffness_section(analysis: Analysis) -> Section | None:
             Prose("Stiffness of the platform with the strokes held, as seen at its reference point."),
             stiffness_table(statics),
             *([] if analysis.freedoms is None else [freedom_stiffness_table(analysis.freedoms)]),
-            Abreast((Picture(polar, caption), Abreast((principal_table(statics), centre_table(statics), *sag)))),
-            *([] if analysis.units is None else [unit_table(analysis.units)]),
+            principal_table(statics),
+            Abreast((Picture(polar, caption), Abreast((centre_table(statics), *sag)))),
+            result_table(analysis.units or {}),
             fold(
                 "Compliance, stiffness by angle, mass, springs of the lever units",
                 compliance_table(statics),
@@ -137,7 +137,7 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
             fold("Budget by part, and energy by part", budget_table(lost), energy_table(lost)),
             Folded("Gains, crosstalk, corrected mapping", (gain_table(lost), crosstalk_table(lost), correction_table(lost))),
             *[
-                Folded(f"What Eq. 3 omits of the {name} unit's gain", (omitted_table(unit.omitted),))
+                fold(f"Terms of the {name} unit's gain that Eq. 3 omits", omitted_table(unit.omitted))
                 for name, unit in (analysis.units or {}).items()
                 if unit.omitted is not None
             ],

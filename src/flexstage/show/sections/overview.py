@@ -7,13 +7,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from flexstage.analysis.assessment.difference import Comparison
-from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.show.display import format_value, number, percent
 from flexstage.show.page import Fact, Facts, Headline, Prose, Section, section
-from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
-from flexstage.show.tables.change import change_table, set_table
-from flexstage.show.tables.requirements import answer_text, first_margin, is_met, margin_text, meaning, value_text, verdict_text
+from flexstage.show.table import first_design, result_table
+from flexstage.show.tables.change import set_table
+from flexstage.show.tables.requirements import is_met, verdict_table, verdict_text
 
 _SILENT = 1e-9
 
@@ -43,7 +42,7 @@ def requirement_section(analysis: Analysis) -> Section | None:
     if not analysis.verdicts:
         return None
     note = "Judged by the lumped model, whichever model the rest of this report uses."
-    return section("Requirements", [_verdict_table(analysis.verdicts), Prose(note)])
+    return section("Requirements", [verdict_table(sorted(analysis.verdicts, key=is_met), explained=True), Prose(note)])
 
 
 def change_section(analysis: Analysis, compared: Comparison | None) -> Section | None:
@@ -57,29 +56,7 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
     if compared is None:
         return None
     values = set_table(compared.stated, analysis.mechanism, compared.addresses)
-    return section("Changes", [values, change_table(compared.figures)])
-
-
-def _verdict_table(verdicts: Sequence[Verdict]) -> Table:
-    ranked = sorted(verdicts, key=is_met)
-    notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
-    heads = ["requirement", Column("value"), Column("demand"), Column("margin"), "verdict", "what it means"]
-    return make_table("", heads, [_verdict_row(verdict) for verdict in ranked], notes=notes)
-
-
-def _verdict_row(verdict: Verdict) -> tuple[Cell, ...]:
-    good = is_met(verdict)
-    mark = Mark.PASS if good else Mark.FAIL
-    margin = first_margin(verdict)
-    bar = min(1.0, margin) if good and np.isfinite(margin) else None
-    return (
-        Cell(verdict.requirement.key, Mark.STRONG),
-        Cell(value_text(verdict), Mark.PLAIN if good else Mark.FAIL),
-        Cell(verdict.requirement.text),
-        Cell(margin_text(verdict), mark, bar),
-        Cell(answer_text(verdict), mark),
-        Cell(meaning(verdict)),
-    )
+    return section("Changes", [values, result_table(compared.figures)])
 
 
 def summary_section(analysis: Analysis) -> Section | None:

@@ -6,19 +6,10 @@ from flexstage.analysis.complete import Analysis
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.workspace import workspace_figure
-from flexstage.show.page import Block, Folded, Picture, Prose, Section, fold, section
-from flexstage.show.table import row_table
+from flexstage.show.page import Block, Picture, Prose, Section, fold, section
+from flexstage.show.table import result_table
 from flexstage.show.tables.force_workspace import force_workspace_tables
-from flexstage.show.tables.strength import buckling_table, load_table, platform_line_table, stress_table
-from flexstage.show.tables.workspace import (
-    clearance_table,
-    corner_table,
-    extent_table,
-    gauge_range_table,
-    map_error_table,
-    resolution_table,
-    stroke_table,
-)
+from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_tables
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
@@ -40,17 +31,10 @@ def workspace_section(analysis: Analysis) -> Section | None:
     return section(
         "Workspace",
         [
-            stroke_table(reach),
+            *stroke_tables(reach),
             picture,
-            None if reach.worst_case is None else corner_table(reach.worst_case),
-            None if reach.gauges is None else gauge_range_table(reach.gauges),
-            None if reach.resolution is None else resolution_table(reach.resolution),
-            fold(
-                "Extents, error of the linear map, volts",
-                None if reach.polytope is None else extent_table(reach.polytope),
-                None if reach.map_error is None else map_error_table(reach.map_error),
-                None if reach.drive is None else row_table("Drive", reach.drive),
-            ),
+            *gauge_tables(reach),
+            fold("Extents, error of the linear map, volts", *map(result_table, (reach.polytope, reach.map_error, reach.drive))),
         ],
     )
 
@@ -66,7 +50,9 @@ def strength_section(analysis: Analysis) -> Section | None:
     reach = analysis.workspace
     if reach is not None:
         return section("Forces, strength and clearance", _strength(reach))
-    return None if analysis.buckling is None else section("Buckling", [buckling_table(analysis.buckling)])
+    return (
+        None if analysis.buckling is None else section("Buckling", [result_table(analysis.buckling.stage), result_table(analysis.buckling)])
+    )
 
 
 def _strength(reach: Workspace) -> list[Block | None]:
@@ -74,17 +60,13 @@ def _strength(reach: Workspace) -> list[Block | None]:
     text = "Stress, buckling and loads count from the stage relaxed without voltage, over all corners of the strokes, dead load included."
     return [
         Prose(text) if stressed else None,
-        stress_table(reach.stress) if stressed and reach.stress is not None else None,
-        None if reach.platform_lines is None else platform_line_table(reach.platform_lines),
-        None if reach.loads is None else load_table(reach.loads, reach.limits.from_zero),
-        None if reach.clearance is None else clearance_table(reach.clearance),
-        _more(reach),
+        result_table(reach.stress),
+        result_table(reach.platform_lines),
+        *load_tables(reach),
+        result_table(reach.clearance),
+        fold(
+            "Stacks against the stage, buckling",
+            result_table(reach.stack_lines),
+            *([] if reach.buckling is None else [result_table(reach.buckling.stage), result_table(reach.buckling)]),
+        ),
     ]
-
-
-def _more(reach: Workspace) -> Folded | None:
-    return fold(
-        "Stacks against the stage, buckling",
-        None if reach.stack_lines is None else row_table("Stacks against the stage", reach.stack_lines),
-        None if reach.buckling is None or not reach.buckling.links else buckling_table(reach.buckling),
-    )

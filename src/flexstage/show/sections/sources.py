@@ -11,7 +11,7 @@ from flexstage.parts.notch import Notch
 from flexstage.show.display import NO_VALUE, percent
 from flexstage.show.page import Block, Folded, Prose, Section, fold, section
 from flexstage.show.scene.primitives import first_value
-from flexstage.show.table import PAGE_ROWS, Cell, Column, Mark, Table, make_table
+from flexstage.show.table import PAGE_ROWS, Column, Table, text_table
 from flexstage.show.tables.description import provenance_table, requirement_lines, source_table, value_tables
 from flexstage.spatial.frame import COMPONENTS
 
@@ -79,8 +79,7 @@ def _missing_table(analysis: Analysis) -> Table | None:
     gone = dict(analysis.missing)
     if analysis.workspace is not None:
         gone |= {f"workspace: {name}": reason for name, reason in analysis.workspace.reasons.items()}
-    rows = [(Cell(name.replace("_", " "), Mark.STRONG), reason) for name, reason in gone.items()]
-    return make_table("Not given, and why", ["result", "reason"], rows) if rows else None
+    return text_table("Missing results", ["result", "reason"], {name.replace("_", " "): reason for name, reason in gone.items()})
 
 
 def error_of_theory_table(mechanism: Mechanism) -> Table | None:
@@ -92,14 +91,13 @@ def error_of_theory_table(mechanism: Mechanism) -> Table | None:
     """
     materials = mechanism.materials
     known = {name: validity(part, name, materials.get(getattr(part, "material", ""))).errors for name, part in mechanism.parts.items()}
-    rows = [
-        (Cell(name, Mark.STRONG), *(percent(first_value(errors[axis]), 2) if axis in errors else NO_VALUE for axis in COMPONENTS))
+    rows = {
+        name: [percent(first_value(errors[axis]), 2) if axis in errors else NO_VALUE for axis in COMPONENTS]
         for name, errors in known.items()
         if errors
-    ]
+    }
     note = "Negative: beam theory is too stiff. A component without a number was not compared with elasticity."
-    columns = ["part", *(Column(axis) for axis in COMPONENTS)]
-    return make_table("Error of beam theory to expect in the compliance of the parts", columns, rows, notes=[note]) if rows else None
+    return text_table("Model error of beam theory in the compliance of the parts", ["part", *map(Column, COMPONENTS)], rows, notes=[note])
 
 
 def reference_section(analysis: Analysis) -> Section | None:

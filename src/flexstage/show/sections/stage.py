@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.page import Abreast, Folded, Joined, Legend, Picture, Prose, Section, Viewer, section
+from flexstage.show.page import Abreast, Joined, Legend, Picture, Prose, Section, Viewer, fold, section
 from flexstage.show.plan import plan_picture, rings
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import Scene, scene
@@ -102,7 +102,7 @@ def drawing_section(mechanism: Mechanism, seen: Scene) -> Section | None:
             Abreast((sides[0], Abreast(sides[1:]))),
             Picture(plan, plan_caption),
             composition_table(mechanism),
-            Folded("Every link as drawn", (link_table(mechanism),)),
+            fold("Links in the design file", link_table(mechanism)),
         ],
     )
 

@@ -15,7 +15,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Part, Restricted
 from flexstage.show.display import field_unit, number
 from flexstage.show.scene.primitives import first_value
-from flexstage.show.table import Cell, Column, Mark, Table, further, make_table
+from flexstage.show.table import Cell, Column, Mark, Table, further, make_table, text_table
 from flexstage.spatial.frame import COMPONENTS
 
 TITLES = {
@@ -39,7 +39,7 @@ _TAGS = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED
 _NUMBER_DIGITS = 6
 
 
-def composition_table(mechanism: Mechanism) -> Table:
+def composition_table(mechanism: Mechanism) -> Table | None:
     """How many bodies, links, actuators and gauges the stage has, and of which kinds.
 
     >>> composition_table(Mechanism("")).texts()[1]
@@ -50,15 +50,18 @@ def composition_table(mechanism: Mechanism) -> Table:
     kinds = Counter(kind_name(link.part) for link in links)
     gauges = Counter(getattr(place, "gauge", "sum") for key, place in mechanism.gauges.items() for _ in copy_names(key))
     units = Counter(placement.unit for key, placement in mechanism.placements.items() for _ in copy_names(key))
-    rows = [
-        ("bodies", str(len(assembly.bodies)), ", ".join(f"{count} x {unit}" for unit, count in units.items())),
-        ("links", str(len(links)), ", ".join(f"{count} {kind}" for kind, count in kinds.items())),
-        ("actuators", str(len(assembly.actuators)), ", ".join(assembly.actuators)),
-        ("gauges", str(len(assembly.gauges)), ", ".join(f"{count} x {gauge}" for gauge, count in gauges.items())),
-    ]
-    if assembly.stops:
-        rows.append(("stops", str(len(assembly.stops)), ", ".join(assembly.stops)))
-    return make_table("Composition", ["", Column("number"), "of which"], rows)
+    rows = {
+        "bodies": (str(len(assembly.bodies)), _counts_text(units)),
+        "links": (str(len(links)), _counts_text(kinds)),
+        "actuators": (str(len(assembly.actuators)), ", ".join(assembly.actuators)),
+        "gauges": (str(len(assembly.gauges)), _counts_text(gauges)),
+        **({"stops": (str(len(assembly.stops)), ", ".join(assembly.stops))} if assembly.stops else {}),
+    }
+    return text_table("Composition", ["", Column("number"), "which"], rows)
+
+
+def _counts_text(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{count} x {kind}" for kind, count in counts.items())
 
 
 def kind_name(part: Part) -> str:
@@ -72,21 +75,21 @@ def kind_name(part: Part) -> str:
     return inner.kind if inner is part else f"restricted {inner.kind}"
 
 
-def link_table(mechanism: Mechanism) -> Table:
-    """Every link as drawn: what it joins, its part, in how many copies.
+def link_table(mechanism: Mechanism) -> Table | None:
+    """Every link of the design file: the bodies that it joins, its part, the number of its instances; `None` without any.
 
-    >>> link_table(Mechanism("")).rows
-    ()
+    >>> link_table(Mechanism("")) is None
+    True
     """
     assembly = expand(mechanism)
     links = [*assembly.links.values(), *assembly.superelements.values()]
     counts = Counter(link.drawn for link in links)
     first = {link.drawn: link for link in reversed(links)}
-    rows = [
-        (Cell(drawn.removeprefix("links."), Mark.STRONG), " - ".join(first[drawn].link.bodies), first[drawn].link.part, str(count))
+    rows = {
+        drawn.removeprefix("links."): (" - ".join(first[drawn].link.bodies), first[drawn].link.part, str(count))
         for drawn, count in counts.items()
-    ]
-    return make_table("Links as drawn", ["link", "joins", "part", Column("copies")], rows)
+    }
+    return text_table("Links in the design file", ["link", "joins", "part", Column("instances")], rows)
 
 
 _Numbers: TypeAlias = Mapping[str, tuple[Number, Quantity]]
@@ -138,11 +141,9 @@ def source_table(mechanism: Mechanism) -> Table | None:
     >>> source_table(Mechanism("")) is None
     True
     """
-    rows = [(Cell(key, Mark.STRONG), text) for key, text in mechanism.sources.items()]
     holders = {**mechanism.materials, **mechanism.parts, **mechanism.sensors}
-    own = {name: str(getattr(value, "source", "")) for name, value in holders.items()}
-    rows += [(Cell(name, Mark.STRONG), text) for name, text in own.items() if text]
-    return make_table("Sources", ["", "source"], rows) if rows else None
+    own = {name: source for name, value in holders.items() if (source := str(getattr(value, "source", "")))}
+    return text_table("Sources", ["", "source"], {**mechanism.sources, **own})
 
 
 def requirement_lines(mechanism: Mechanism) -> Table | None:
@@ -151,8 +152,7 @@ def requirement_lines(mechanism: Mechanism) -> Table | None:
     >>> requirement_lines(Mechanism("", requirements={"stroke.x": "at least 50 um"})).texts()[1]
     ['stroke.x', 'at least 50 um']
     """
-    rows = [(Cell(key, Mark.STRONG), text) for key, text in mechanism.requirements.items()]
-    return make_table("Requirements", ["requirement", "demand"], rows) if rows else None
+    return text_table("Requirements", ["requirement", "demand"], mechanism.requirements)
 
 
 def _join_components(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:

@@ -6,12 +6,15 @@ import numpy as np
 
 from flexstage.analysis.assessment.error_budget import STEPS, ErrorBudget
 from flexstage.analysis.linear_statics.drift import Drift
-from flexstage.base.labelled import Matrix
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expansion import Ground
 from flexstage.show.display import number
-from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table, short_names
+from flexstage.show.table import Table, first_design, matrix_table
 from flexstage.show.tables.workspace import command_text
-from flexstage.spatial.frame import COMPONENTS
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_NANO = ("nm", "nrad")
 
 
 def drift_table(drift: Drift) -> Table:
@@ -22,22 +25,11 @@ def drift_table(drift: Drift) -> Table:
     >>> from flexstage.analysis.linear_statics.drift import drift
     >>> stage = double_triangle()
     >>> drift_table(drift(stage, fs.lumped(stage), ground="steel")).texts()[0][1]
-    'uniform [per K]'
+    'uniform [K]'
     """
-    values = first_design(drift.motion.values, 2)
-    scale = np.max(np.abs(values), axis=1, keepdims=True, initial=0.0)
-    kept = np.where(np.abs(values) < 1e-9 * max(float(np.max(scale)), 1e-12), 0.0, values)
-    rows = [
-        (
-            Cell(f"{name} [{'nrad' if name.rpartition('.')[2].startswith('r') else 'nm'}]", Mark.STRONG),
-            *(_nano_cell(value) for value in line),
-        )
-        for name, line in zip(short_names(drift.motion.rows), kept, strict=True)
-    ]
-    heads = ["motion", Column("uniform", "per K"), *(Column(f"gradient {axis}", "per K/m") for axis in "xyz")]
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
     notes = [f"Strokes held. {ground_text(drift.ground)}; its point ({at}) mm stays."]
-    return make_table("Thermal drift", heads, rows, notes=notes, provenance=drift.provenance)
+    return matrix_table("Thermal drift", drift.motion, units=_NANO, notes=notes)
 
 
 def ground_text(ground: Ground) -> str:
@@ -51,18 +43,13 @@ def ground_text(ground: Ground) -> str:
     return f"Ground made of {ground.material}" if ground.stated else f"Ground taken as {ground.material}: {ground.source}"
 
 
-def _nano_cell(value: float) -> Cell:
-    text = number(1e9 * float(value), 4)
-    return Cell(text, Mark.FAINT if text == "0" else Mark.PLAIN)
-
-
 def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:
     """Largest errors by axis and source, without and with the lost-motion gains in the command.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.budget import budget
     >>> error_budget_tables(budget(double_triangle(), {"z": 1e-5}))[0].texts()[3][:2]
-    ['z [nm]', '336.8']
+    ['z [nm]', '336.76']
     """
     sums = first_design(budget.sums.values, 2)
     titles = ("Error budget, ideal mapping commanded", "Error budget, lost motion corrected by command")
@@ -72,28 +59,21 @@ def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:
     )
 
 
-def _budget_table(title: str, matrix: Matrix, sums: np.ndarray, budget: ErrorBudget) -> Table:
-    rows = [
-        (Cell(f"{axis} [{'nrad' if axis.startswith('r') else 'nm'}]", Mark.STRONG), *(_nano(value) for value in (*line, *totals)))
-        for axis, line, totals in zip(COMPONENTS, first_design(matrix.values, 2), sums, strict=True)
-    ]
-    heads = ["along", *(Column(name) for name in matrix.columns), Column("linear sum"), Column("root sum square")]
+def _budget_table(title: str, matrix: Matrix, sums: Array, budget: ErrorBudget) -> Table:
+    values = np.concatenate([first_design(matrix.values, 2), sums], axis=1)
+    columns = (*matrix.columns, "linear sum", "root sum square")
     warm = number(float(np.real(np.ravel(budget.temperature)[0])))
     warmed = "" if "drift" in budget.reasons else f", and {warm} K of uniform temperature change"
     notes = [f"Largest errors over {command_text(budget.command)}, all at once{warmed}."]
-    if not np.all(np.isnan(first_design(matrix.values, 2)[:, matrix.columns.index("gauge noise")])):
+    if not np.all(np.isnan(values[:, matrix.columns.index("gauge noise")])):
         notes += [f"Gauge noise: {budget.coverage:g} standard deviations. Quantisation: half a step of every gauge, signs at their worst."]
     notes += ["Actuator steps: half a step of every stepping drive, signs at their worst."] if STEPS in matrix.columns else []
     notes += [] if budget.ground is None else [f"{ground_text(budget.ground)}."]
     missing = [name for name in budget.missing if name not in budget.reasons]
     notes += [f"Not stated, so not counted: {', '.join(missing)}."] if missing else []
     notes += [f"Not known, so not counted: {name}, for {reason}." for name, reason in budget.reasons.items()]
-    return make_table(title, heads, rows, notes=notes, provenance=budget.provenance)
-
-
-def _nano(value: float) -> Cell:
-    text = number(1e9 * float(value), 4) if not abs(value) < 1e-15 else "0"
-    return Cell(text, Mark.FAINT if text in ("0", "-") else Mark.PLAIN)
+    found = Matrix(values, COMPONENTS, columns, ratio_units(TWIST_UNITS, ("1",) * len(columns)))
+    return matrix_table(title, found, units=_NANO, notes=notes)
 
 
 def gauge_drift_table(drift: Drift) -> Table | None:

@@ -1,35 +1,32 @@
-"""Tables of ideal kinematics: mobility, mappings, idle freedoms and redundant constraints by name."""
+"""Tables of ideal kinematics: mobility and mappings."""
 
 from __future__ import annotations
 
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.parts.freedom import Freedom
 from flexstage.show.display import number
-from flexstage.show.table import Cell, Column, Mark, Table, make_table, matrix_table
+from flexstage.show.table import Column, Table, make_table, matrix_table, merge_rows, text_table
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
-def mobility_table(kinematics: Kinematics) -> Table:
+def mobility_table(kinematics: Kinematics) -> Table | None:
     """Freedoms of the platform, strokes, and how they match.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> mobility_table(ideal(double_triangle())).texts()[1]
-    ['platform freedoms', '6', 'x, y, z, rx, ry, rz']
+    ['platform DOFs', '6', 'x, y, z, rx, ry, rz']
     """
-    strokes, mobility = len(kinematics.actuators), kinematics.mobility
-    rows = [
-        ("platform freedoms", str(mobility), ", ".join(kinematics.coordinates)),
-        ("actuators", str(strokes), ", ".join(kinematics.actuators)),
-        *([("force actuators", str(len(kinematics.thrusts)), ", ".join(kinematics.thrusts))] if kinematics.thrusts else []),
-        ("gauges", str(len(kinematics.gauges)), ", ".join(kinematics.gauges)),
-        ("idle freedoms", str(len(kinematics.idle)), "move neither platform nor stroke"),
-        ("redundant constraints", str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"),
-    ]
-    return make_table(
-        "Mobility", ["", Column("number"), "which"], rows, notes=[actuation_text(kinematics)], provenance=kinematics.provenance
-    )
+    named = {
+        "platform DOFs": kinematics.coordinates,
+        "actuators": kinematics.actuators,
+        "force actuators": kinematics.thrusts,
+        "gauges": kinematics.gauges,
+    }
+    rows = {name: (str(len(each)), ", ".join(each)) for name, each in named.items() if each or name != "force actuators"}
+    rows["free internal modes"] = str(len(kinematics.idle)), "move neither platform nor stroke"
+    rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"
+    return text_table("Mobility", ["", Column("number"), "which"], rows, notes=[actuation_text(kinematics)])
 
 
 def actuation_text(kinematics: Kinematics) -> str:
@@ -96,7 +93,7 @@ def mapping_table(kinematics: Kinematics) -> Table:
     >>> mapping_table(ideal(double_triangle())).texts()[1][:4]
     ['B1 [um]', '1', '0', '0']
     """
-    return matrix_table("Actuator mapping R_a", kinematics.mapping, fine=False)
+    return matrix_table("Actuator mapping R_a", kinematics.mapping, units=("mrad",))
 
 
 def gauge_table(kinematics: Kinematics) -> Table:
@@ -107,7 +104,7 @@ def gauge_table(kinematics: Kinematics) -> Table:
     >>> gauge_table(ideal(double_triangle())).texts()[4][:4]
     ['S4 [um]', '0', '0', '1']
     """
-    return matrix_table("Gauge mapping R_s", kinematics.gauge_mapping, fine=False)
+    return matrix_table("Gauge mapping R_s", kinematics.gauge_mapping, units=("mrad",))
 
 
 def jacobian_table(kinematics: Kinematics) -> Table:
@@ -133,7 +130,9 @@ def motion_table(kinematics: Kinematics) -> Table | None:
         return None
     units = ratio_units(TWIST_UNITS, tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates))
     note = f"The length that makes rotations comparable with translations is {number(1e3 * kinematics.first_length, 4)} mm."
-    return matrix_table("Ideal motions V", Matrix(kinematics.motion, COMPONENTS, kinematics.coordinates, units), fine=False, notes=[note])
+    return matrix_table(
+        "Ideal motions V", Matrix(kinematics.motion, COMPONENTS, kinematics.coordinates, units), units=("mrad",), notes=[note]
+    )
 
 
 def freedom_table(kinematics: Kinematics) -> Table:
@@ -142,38 +141,9 @@ def freedom_table(kinematics: Kinematics) -> Table:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> freedom_table(ideal(double_triangle())).texts()[1]
-    ['back', 'rx, ry, rz', 'B1, B2, B3']
+    ['back (B1, B2, B3)', 'rx, ry, rz']
     """
-    shared: dict[tuple[str, tuple[Freedom, ...]], list[str]] = {}
-    for link, free in kinematics.free.items():
-        copy, _, name = link.rpartition("/")
-        shared.setdefault((name, free), []).append(copy)
-    rows = [
-        (Cell(name, Mark.STRONG), ", ".join(freedom.value for freedom in free) or "none", ", ".join(copy for copy in owners if copy))
-        for (name, free), owners in shared.items()
-    ]
-    return make_table("Freedoms taken as free", ["link", "free", "in"], rows, notes=["In each link's own frame, x along the part."])
-
-
-def idle_table(kinematics: Kinematics) -> Table | None:
-    """Freedoms that move neither platform nor stroke, by the links that turn; `None` where there are none.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.models.ideal import ideal
-    >>> idle_table(ideal(double_triangle())).texts()[1]
-    ['1', 'B1/base, B1/tip', 'B1/back, B1/front']
-    """
-    rows = [(str(number + 1), ", ".join(idle.bodies), ", ".join(idle.links)) for number, idle in enumerate(kinematics.idle)]
-    return make_table("Idle freedoms", [Column("no."), "bodies that move", "links that deform"], rows) if rows else None
-
-
-def redundant_table(kinematics: Kinematics) -> Table | None:
-    """Sets of locked freedoms of which one is superfluous; `None` where there are none.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.models.ideal import ideal
-    >>> redundant_table(ideal(double_triangle())).texts()[2]
-    ['2', 'B4/back.rx, B4/pzt.rx, B4/front.rx, B4/pivot.rx']
-    """
-    rows = [(str(number + 1), ", ".join(item.constraints)) for number, item in enumerate(kinematics.redundant)]
-    return make_table("Redundant constraints", [Column("no."), "locked freedoms, one of them superfluous"], rows) if rows else None
+    free = {link: ", ".join(freedom.value for freedom in freedoms) or "none" for link, freedoms in kinematics.free.items()}
+    return merge_rows(
+        make_table("DOFs taken as free", ["link", "free"], free.items(), notes=["In each link's own frame, x along the part."])
+    )

@@ -199,7 +199,7 @@ def correction_table(lost: LostMotion) -> Table:
     >>> correction_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][3]
     '0.34422'
     """
-    return matrix_table("Corrected mapping: strokes that reach the wanted motion", lost.correction, fine=False)
+    return matrix_table("Corrected mapping: strokes that reach the wanted motion", lost.correction, units=("mrad",))
 
 
 def energy_table(lost: LostMotion) -> Table:
@@ -211,8 +211,7 @@ def energy_table(lost: LostMotion) -> Table:
     >>> energy_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[1][0]
     'pivot'
     """
-    values = first_design(lost.energy.values, 2)
-    energies = {name: name_links(_shares(lost.energy, values[:, column]), name, str) for column, name in enumerate(lost.energy.columns)}
+    energies = energy_shares(lost)
     totals = first_design(lost.energy.values, 2).sum(axis=0)
     rows = _share_rows(energies, "all")
     whole = [Cell("energy [uJ/um^2]", Mark.STRONG), *(Cell(number(1e-6 * float(total), 4)) for total in totals)]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from flexstage.analysis.dynamics.modes import Modes
-from flexstage.base.labelled import NOISE
 from flexstage.models.batch.choice import THRESHOLD
-from flexstage.show.display import align_numbers, percent
-from flexstage.show.table import Cell, Column, Mark, Table, batch_note, first_design, make_table
+from flexstage.show.display import percent
+from flexstage.show.table import Table, batch_note, result_table
 
 PLATFORM_MODES = (
     f"With a platform mode, one more direction of the platform has {percent(THRESHOLD, 2)} of its compliance from the modes so far."
@@ -16,7 +15,7 @@ PLATFORM_MODES = (
 _FURTHER = 3
 
 
-def mode_table(modes: Modes) -> Table:
+def mode_table(modes: Modes) -> Table | None:
     """Frequencies, names, shares and planes of the platform's modes and of every mode up to three beyond the last local one.
 
     >>> import flexstage as fs
@@ -25,27 +24,8 @@ def mode_table(modes: Modes) -> Table:
     ['3', '126.16', 'z', '87.47 %', '99.74 %', 'out of plane', 'platform']
     """
     listed = listed_modes(modes)
-    frequencies = align_numbers([float(value) for value in first_design(modes.frequencies, 1)[list(listed)]], 5)
-    shares = first_design(modes.share, 1), first_design(modes.compliance_share, 1)
-    rows = [
-        (
-            Cell(str(index + 1), Mark.STRONG),
-            Cell(frequency),
-            Cell(modes.names[index]),
-            *(Cell(percent(_zero_if_noise(float(share[index]))), bar=float(share[index])) for share in shares),
-            Cell("in plane" if modes.in_plane[index] else "out of plane"),
-            _role(modes, index),
-        )
-        for index, frequency in zip(listed, frequencies, strict=True)
-    ]
-    heads = [Column("mode"), Column("frequency", "Hz"), "name", Column("platform's share"), Column("compliance share"), "plane", "role"]
     notes = [PLATFORM_MODES, *_partial(modes), *_unlisted(modes, listed), *batch_note(modes.frequencies, 1)]
-    return make_table("Modes", heads, rows, notes=notes, provenance=modes.provenance)
-
-
-def _zero_if_noise(share: float) -> float:
-    """A share without rounding noise."""
-    return share if share > NOISE else 0.0
+    return result_table(tuple(map(modes.mode, listed)), notes=notes)
 
 
 def listed_modes(modes: Modes) -> tuple[int, ...]:
@@ -58,12 +38,6 @@ def listed_modes(modes: Modes) -> tuple[int, ...]:
     """
     last = max((*modes.platform, *modes.local), default=modes.listed)
     return tuple(range(min(len(modes.names), last + 1 + _FURTHER)))
-
-
-def _role(modes: Modes, index: int) -> Cell:
-    if index in modes.platform:
-        return Cell("platform", Mark.PASS)
-    return Cell("local neighbour", Mark.WARN) if index in modes.local else Cell("local", Mark.FAINT)
 
 
 def _partial(modes: Modes) -> list[str]:

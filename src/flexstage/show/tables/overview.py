@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from itertools import groupby
 
 import numpy as np
 
@@ -14,8 +13,8 @@ from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.number import first_design
-from flexstage.show.display import NO_VALUE, align_numbers, format_value, number, percent
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.display import NO_VALUE, format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
 from flexstage.show.tables.lost_motion import loss_table
 from flexstage.show.tables.requirements import first_margin, is_met, margin_text, value_text, verdict_table, verdict_text
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
@@ -168,26 +167,14 @@ def _shown(value: float, name: str, units: tuple[str, ...]) -> str:
 
 
 def _platform_modes(modes: Modes) -> Table | None:
-    if not modes.platform:
-        return None
-    frequencies, *shares = (first_design(each, 1) for each in (modes.frequencies, modes.share, modes.compliance_share))
-    texts = [f"{each} Hz" for each in align_numbers([float(frequencies[index]) for index in modes.platform], _DIGITS)]
-    rows = [
-        (
-            Cell(str(index + 1), Mark.STRONG),
-            Cell(text),
-            Cell(modes.names[index]),
-            *(Cell(percent(float(share[index]), 3)) for share in shares),
-        )
-        for index, text in zip(modes.platform, texts, strict=True)
-    ]
-    beside = [number(float(frequencies[index]), _DIGITS) for index in sorted(modes.local)[:1]]
+    near = [modes.mode(index).frequency for index in sorted(modes.local)[:1]]
     notes = [
-        f"{_count(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {each} Hz."
-        for each in beside
+        f"{_count(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {number(each, _DIGITS)} Hz."
+        for each in near
     ]
-    heads = [Column("mode"), Column("frequency"), "name", Column("platform's share"), Column("compliance share")]
-    return make_table("Platform modes", heads, _merge(rows, slice(1, None), ", ".join), notes=notes)
+    fields = "number frequency name platform_share compliance_share"
+    table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
+    return None if table is None else merge_rows(table)
 
 
 def lowest_mode(modes: Modes) -> str | None:
@@ -206,21 +193,10 @@ def lowest_mode(modes: Modes) -> str | None:
 
 
 def _first_rows(table: Table) -> Table:
-    """Actuator, gain, loss and largest contribution; those that lose alike in one row. How many rows are left out is said."""
-    rows = _merge(table.rows, slice(1, -1), lambda names: names[0] if len(names) == 1 else f"{names[0]} (alike: {', '.join(names[1:])})")
-    rest = len(rows) - _ROWS
-    notes = (f"{_count(rest, 'further row')}: --full.",) if rest > 0 else ()
-    shown = tuple((*row[:_LOSS], replace(row[-1], text=row[-1].text.partition(", ")[0])) for row in rows[:_ROWS])
-    return Table(table.title, (*table.columns[:_LOSS], Column("largest contribution", numeric=False)), shown, notes, table.provenance)
-
-
-def _merge(rows: Sequence[tuple[Cell, ...]], alike: slice, name: Callable[[list[str]], str]) -> tuple[tuple[Cell, ...], ...]:
-    """Rows that follow one another and show the same in some columns, as one: its first, under the name of all of their first cells."""
-    found: list[tuple[Cell, ...]] = []
-    for _, group in groupby(rows, lambda row: [cell.text for cell in row[alike]]):
-        first, *others = group
-        found.append((replace(first[0], text=name([first[0].text, *(row[0].text for row in others)])), *first[1:]))
-    return tuple(found)
+    """Actuator, gain, loss and largest contribution; equal ones in one row. A note counts the rows that are left out."""
+    rows = [(*row[:_LOSS], replace(row[-1], text=row[-1].text.partition(", ")[0])) for row in table.rows]
+    shown = make_table(table.title, [*table.columns[:_LOSS], "largest contribution"], rows, provenance=table.provenance)
+    return first_rows(merge_rows(shown), _ROWS)
 
 
 def _strength_text(analysis: Analysis) -> str | None:

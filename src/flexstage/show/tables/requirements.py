@@ -14,8 +14,8 @@ from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_t
 _LEAST = 0.01
 
 
-def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
-    """Requirements with demand, value and margin, met or not; `None` without any.
+def verdict_table(verdicts: Sequence[Verdict], *, explained: bool = False) -> Table | None:
+    """Requirements with demand, value and margin, met or not, `explained` with the meaning of each; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -25,8 +25,13 @@ def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
     if not verdicts:
         return None
     rows = [_row(verdict) for verdict in verdicts]
+    heads: list[Column | str] = ["requirement", "demand", Column("value"), Column("margin"), "verdict"]
+    if explained:  # the value beside the name
+        rows = [
+            (name, value, demand, *rest, Cell(meaning(each))) for each, (name, demand, value, *rest) in zip(verdicts, rows, strict=True)
+        ]
+        heads = [heads[0], heads[2], heads[1], *heads[3:], "meaning"]
     notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
-    heads = ["requirement", "demand", Column("value"), Column("margin"), "verdict"]
     return make_table("Requirements", heads, rows, notes=notes)
 
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.models.linear.frequency import Response
-from flexstage.show.display import format_value, number
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.display import number
+from flexstage.show.table import Table, column_table
 
 _NOISE = 1e-9
 
@@ -55,26 +55,22 @@ def response_table(response: Response) -> Table:
     >>> from flexstage.models.linear.model import Channel
     >>> seen = Response(np.array([1.0, 2.0]), (Channel("x", "m"),), (Channel("a", "m"),), np.array([[[1.0]], [[5.0]]]), "")
     >>> response_table(seen).texts()[1]
-    ['x', 'a', '1', '5', '2', '5']
+    ['x, a', '1', '5', '2', '5']
     """
     curves = leading_curves(response)
-    largest = {unit: max(np.max(np.abs(curve.values)) for curve in curves if curve.unit == unit) for unit in {each.unit for each in curves}}
-    rows = [(Cell(curve.output, Mark.STRONG), *_numbers(curve, response.frequencies, _NOISE * largest[curve.unit])) for curve in curves]
-    heads = ["output", "leading input", Column("low-frequency gain"), Column("highest magnitude"), Column("at", "Hz"), Column("rise")]
+    sizes = np.array([np.abs(curve.values) for curve in curves])
+    units = np.array([curve.unit for curve in curves])
+    largest = np.array([np.max(sizes[units == unit]) for unit in units])
+    sizes = np.where(sizes < _NOISE * largest[:, None], 0.0, sizes)
+    low, highest = sizes[:, 0], np.max(sizes, axis=1)
+    there = np.where(highest > 0.0, response.frequencies[np.argmax(sizes, axis=1)], np.nan)
+    rise = np.where(low > 0.0, highest / np.where(low > 0.0, low, 1.0), np.nan)
+    found = Matrix(
+        np.column_stack([low, highest, there, rise]),
+        tuple(f"{curve.output}, {curve.input}" for curve in curves),
+        ("low-frequency gain", "highest magnitude", "at", "rise"),
+        tuple((curve.unit, curve.unit, "Hz", "1") for curve in curves),
+    )
     band = f"From {number(float(response.frequencies[0]), 4)} to {number(float(response.frequencies[-1]), 4)} Hz."
-    noise = ["0 stands for rounding noise: below 1e-9 of the largest magnitude in its unit."] if any("0" in row for row in rows) else []
-    return make_table("Frequency responses", heads, rows, notes=[band, *noise], provenance=response.provenance)
-
-
-def _numbers(curve: Curve, frequencies: Array, noise: float) -> Iterator[str]:
-    """Input, gain, highest magnitude, where and the rise; magnitudes below `noise` are 0."""
-    size = np.where(np.abs(curve.values) < noise, 0.0, np.abs(curve.values))
-    peak = int(np.argmax(size))
-    if size[peak] == 0.0:
-        yield from ("-", "0", "0", "-", "-")
-        return
-    yield curve.input
-    yield format_value(float(size[0]), curve.unit, 4) if size[0] > 0.0 else "0"
-    yield format_value(float(size[peak]), curve.unit, 4)
-    yield number(float(frequencies[peak]), 5)
-    yield number(float(size[peak] / size[0]), 4) if size[0] > 0.0 else "-"
+    noise = ["0 stands for rounding noise: below 1e-9 of the largest magnitude in its unit."] if not np.all(low) else []
+    return column_table("Frequency responses", found, head="output, leading input", notes=[band, *noise])

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexstage.analysis.assessment.sensitivities import Sensitivities
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
-from flexstage.show.display import format_value, number
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.table import Table, column_table
 
 
 def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: int = 15) -> Table:
@@ -25,7 +25,7 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
     values = relative.values[:, :modes]
     heads = [f"{name} ({frequency:.5g} Hz)" for name, frequency in zip(relative.columns[:modes], found.frequencies, strict=False)]
     note = "Relative change of the frequency per relative change of the parameter; for repeated modes that of their mean."
-    return _ranking_table("What moves the frequencies", found, values, heads=heads, top=top, note=note)
+    return _ranking_table("Sensitivities of the frequencies", found, values, heads=heads, top=top, note=note)
 
 
 def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | None:
@@ -41,28 +41,15 @@ def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | No
         return None
     matrix = found.relative_loss
     note = "Change of the loss (a share of the stroke) per relative change of the parameter."
-    return _ranking_table("What changes the lost motion", found, matrix.values, heads=matrix.columns, top=top, note=note)
+    return _ranking_table("Sensitivities of the lost motion", found, matrix.values, heads=matrix.columns, top=top, note=note)
 
 
 def _ranking_table(title: str, found: Sensitivities, values: Array, *, heads: Sequence[str], top: int, note: str) -> Table:
     largest = np.max(np.abs(values), axis=1, initial=0.0)
-    order = np.argsort(-np.round(largest, 9), kind="stable")[:top]
-    rows = [
-        (
-            Cell(found.parameters[index], Mark.STRONG),
-            format_value(float(found.values[index]), found.units[index]),
-            *(_cell(float(value), float(largest[index])) for value in values[index]),
-        )
-        for index in order
-        if largest[index] > 0.0
-    ]
-    rest = len(found.parameters) - len(rows)
-    notes = [note, *([f"{rest} further parameters matter less."] if rest > 0 else [])]
-    columns = ["parameter", Column("value"), *(Column(head) for head in heads)]
-    return make_table(title, columns, rows, notes=notes, provenance=found.provenance)
-
-
-def _cell(value: float, scale: float) -> Cell:
-    if abs(value) < 1e-9 * scale:
-        return Cell("0", Mark.FAINT)
-    return Cell(f"{'+' if value > 0.0 else ''}{number(value, 3)}", Mark.FAINT if abs(value) < 0.01 * scale else Mark.PLAIN)
+    order = [place for place in np.argsort(-np.round(largest, 9), kind="stable")[:top] if largest[place] > 0.0]
+    names, units = (tuple(each[place] for place in order) for each in (found.parameters, found.units))
+    whole = np.column_stack([found.values, values])[order]
+    ranked = Matrix(whole, names, ("value", *heads), tuple((unit, *("1",) * len(heads)) for unit in units))
+    rest = len(found.parameters) - len(order)
+    notes = [note, *([f"{rest} further parameters with smaller effects."] if rest > 0 else [])]
+    return column_table(title, ranked, head="parameter", notes=notes)

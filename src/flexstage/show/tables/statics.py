@@ -10,8 +10,9 @@ import numpy as np
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix
 from flexstage.analysis.linear_statics.statics import DirectionalStiffness, FreedomStiffness, Statics, by_freedom
 from flexstage.base.labelled import Matrix
-from flexstage.show.display import align_numbers, number, preferred_unit
-from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table, short_names, unit_row_table
+from flexstage.base.number import Array
+from flexstage.show.display import number
+from flexstage.show.table import Table, column_table, first_design, matrix_table, result_table, short_names
 
 _LOAD = 100.0
 _STEP = 15
@@ -55,10 +56,8 @@ def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
     whole = by_freedom(np.concatenate([left.values, rest.values], axis=-2), (*left.rows, *rest.rows))
     note = "Strokes held. Others free: what a push test measures; it includes that a motion left moves the point along other axes too."
     locked = [f"{reason[:1].upper()}{reason[1:]}." for reason in sorted(set(freedoms.reasons.values()))]
-    heads = ("others free", "others held")
-    return unit_row_table(
-        f"Stiffness by freedom at {freedoms.point}", replace(whole, rows=told), heads=heads, first="freedom", notes=(note, *locked)
-    )
+    found = replace(whole, rows=told, columns=("others free", "others held"))
+    return column_table(f"Stiffness by DOF at {freedoms.point}", found, head="DOF", notes=(note, *locked))
 
 
 def mass_tables(mass: MassMatrix) -> Iterator[Table]:
@@ -95,48 +94,27 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
     ['0', '7.3326', '13.638', '15.45']
     """
     degrees = np.arange(0, 180, _STEP)
-    angles = np.deg2rad(degrees)
-    free, held = (_along(item, angles) for item in (statics.free, statics.held))
-    micro = preferred_unit("N/m").factor
-    columns = [align_numbers(1e6 * load / free), align_numbers(micro * free), align_numbers(micro * held)]
-    rows = [(str(degree), *values) for degree, values in zip(degrees, zip(*columns, strict=True), strict=True)]
-    heads = [
-        Column("direction", "deg"),
-        Column(f"displacement at {number(load)} N", "um"),
-        Column("stiffness, others free", "N/um"),
-        Column("stiffness, others held", "N/um"),
-    ]
-    return make_table("Stiffness by direction in the plane", heads, rows, notes=["Directions counted from x towards y."])
+    free, held = (_along(item, np.deg2rad(degrees)) for item in (statics.free, statics.held))
+    heads = (f"displacement at {number(load)} N", "stiffness, others free", "stiffness, others held")
+    values = np.stack([load / free, free, held], axis=-1)
+    found = Matrix(values, tuple(map(str, degrees)), heads, (("m", "N/m", "N/m"),) * len(degrees))
+    return column_table("Stiffness by direction in the plane", found, head="direction [deg]", notes=["From x towards y."])
 
 
-def _along(stiffness: DirectionalStiffness, angles: np.ndarray) -> np.ndarray:
-    return np.array([float(first_design(np.atleast_1d(stiffness.along(float(angle))), 1)[0]) for angle in angles])
+def _along(stiffness: DirectionalStiffness, angles: Array) -> Array:
+    return np.array([first_design(np.atleast_1d(stiffness.along(float(angle))), 1)[0] for angle in angles])
 
 
-def principal_table(statics: Statics) -> Table:
+def principal_table(statics: Statics) -> Table | None:
     """Principal stiffnesses in the plane with their directions, with the other freedoms free and held.
-
-    Where the two differ by less than rounding, the direction means nothing and is left out.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> from flexstage.analysis.linear_statics.statics import statics
     >>> principal_table(statics(mapped(double_triangle()))).texts()[1]
-    ['free', '13.638', '13.638', 'none', '0 %']
+    ['free', '13.638', '13.638', '-', '0 %']
     """
-    rows = [_principal(name, item) for name, item in (("free", statics.free), ("held", statics.held))]
-    heads = ["other freedoms", Column("stiffest", "N/um"), Column("softest", "N/um"), Column("stiffest along", "deg"), Column("spread")]
-    return make_table("Principal stiffnesses in the plane", heads, rows)
-
-
-def _principal(name: str, stiffness: DirectionalStiffness) -> tuple[Cell, ...]:
-    most, least = (float(value) for value in first_design(stiffness.principal, 1))
-    angle = float(np.rad2deg(first_design(np.atleast_1d(stiffness.angle), 1)[0]))
-    spread = (most - least) / most
-    alike = bool(np.isnan(angle))
-    direction = "none" if alike else number(angle, 4)
-    text = "0 %" if alike else f"{number(100.0 * spread, 3)} %"
-    return Cell(name, Mark.STRONG), Cell(number(1e-6 * most)), Cell(number(1e-6 * least)), Cell(direction), Cell(text)
+    return result_table({"free": statics.free, "held": statics.held})
 
 
 def centre_table(statics: Statics) -> Table:
@@ -148,7 +126,6 @@ def centre_table(statics: Statics) -> Table:
     >>> centre_table(statics(mapped(double_triangle()))).texts()[1]
     ['platform', '0', '0', '-25']
     """
-    values = 1e3 * first_design(statics.centre, 1)
-    texts = align_numbers(np.where(np.abs(values) < 1e-6, 0.0, values))
-    heads = ["relative to", *(Column(axis, "mm") for axis in "xyz")]
-    return make_table("Centre of stiffness", heads, [(Cell(statics.load_point, Mark.STRONG), *texts)])
+    values = first_design(statics.centre, 1)[None]
+    found = Matrix(np.where(np.abs(values) < 1e-9, 0.0, values), (statics.load_point,), ("x", "y", "z"), "m")
+    return column_table("Centre of stiffness", found, head="relative to", unit="mm")
