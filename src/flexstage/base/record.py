@@ -68,13 +68,44 @@ class Called:
     key: str
 
 
+class Mark(Enum):
+    """What a cell means besides its text; a renderer shows it by colour, weight or a sign."""
+
+    PLAIN = "plain"
+    STRONG = "strong"
+    FAINT = "faint"
+    PASS = "pass"
+    FAIL = "fail"
+    WARN = "warn"
+    STATED = "stated"
+    DERIVED = "derived"
+    ASSUMED = "assumed"
+
+
+@dataclass(frozen=True)
+class Graded:
+    """Grades a number by its size: passed up to `good`, a warning up to `poor`, failed beyond."""
+
+    good: float
+    poor: float = float("inf")
+
+    def __call__(self, value: float) -> Mark:
+        """The grade.
+
+        >>> [Graded(0.02, 0.1)(value).value for value in (-0.01, 0.05, -0.2)]
+        ['pass', 'warn', 'fail']
+        """
+        return Mark.PASS if abs(value) <= self.good else Mark.WARN if abs(value) <= self.poor else Mark.FAIL
+
+
 @dataclass(frozen=True)
 class Heading:
     """How tables show a field where its name and its quantity do not say it.
 
     `text` stands over the column (absent: the name in words). `digits` are significant ones of each number (absent: decimals are
-    aligned). `unit` is the display unit (absent: that of the quantity). `varying`: each number has the unit that suits it. `infinite`
-    is the word for an infinite value.
+    aligned). `unit` is the display unit (absent: that of the quantity); a ratio may be shown in `%`. `varying`: each number has the unit
+    that suits it; `unit_field`: the SI unit of each number is in that field. `infinite` is the word for an infinite value. `mark` grades
+    a value.
     """
 
     text: str = ""
@@ -82,14 +113,17 @@ class Heading:
     unit: str = ""
     varying: bool = False
     infinite: str = "inf"
+    unit_field: str = ""
+    mark: Callable[[Any], Mark] | None = None
 
 
 @dataclass(frozen=True)
 class Layout:
     """The table of a result class, its `TABLE`: title, fields in their order (absent: all that a cell holds), head over names, notes.
 
-    Title and notes may hold attributes of the result, as `{self.point}`; of several results, those of the first. A result adds notes that
-    depend on its values by a property `notes`.
+    A field of a result within the result is `experiment.frequency`; fields without a value in any row are left out. Title and notes may
+    hold attributes of the result, as `{self.point}`; of several results, those of the first. A result adds notes that depend on its values
+    by a property `notes`.
     """
 
     title: str
@@ -129,7 +163,7 @@ class Field:
         """How tables show it.
 
         >>> Field("blocking_force", float, (Heading(digits=4),)).heading
-        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf')
+        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', unit_field='', mark=None)
         """
         own = self.annotation(Heading) or Heading()
         return replace(own, text=own.text or self.words)
@@ -182,8 +216,19 @@ def walked_fields(kind: type) -> tuple[Field, ...]:
     """What is told of results of that class: fields, then properties."""
     hints = get_type_hints(kind, include_extras=True)
     own = [(each.name, hints[each.name], "") for each in fields(kind) if each.name != "reasons" and _is_walked(*_unwrap(hints[each.name]))]
-    views = [(name, hint, doc) for name, hint, doc in _properties(kind) if get_origin(hint) is Annotated]
+    properties = [(name, hint, doc) for name, hint, doc in _properties(kind) if get_origin(hint) is Annotated]
+    views = [each for each in properties if INNER not in get_args(each[1])]
     return tuple(Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *views))
+
+
+def field_of(kind: type, name: str) -> Field:
+    """A field or property of a class by its name, also one that documents do not hold (`INNER`).
+
+    >>> field_of(Field, "meaning").heading.text
+    'meaning'
+    """
+    hints = get_type_hints(kind, include_extras=True) | {each: hint for each, hint, _ in _properties(kind)}
+    return Field(name, *_unwrap(hints[name]))
 
 
 def _unwrap(hint: Any) -> tuple[Any, tuple[Any, ...]]:

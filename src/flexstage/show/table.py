@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -12,9 +12,9 @@ import numpy as np
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import Field, values_of
+from flexstage.base.record import Field, Mark, field_of, values_of
 from flexstage.base.storage.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
-from flexstage.base.units.quantity import Bound, Quantity
+from flexstage.base.units.quantity import SHARE, Bound, Quantity
 from flexstage.show.display import (
     DIGITS,
     NO_VALUE,
@@ -27,20 +27,6 @@ from flexstage.show.display import (
     percent,
     preferred_unit,
 )
-
-
-class Mark(Enum):
-    """What a cell means besides its text; a renderer shows it by colour, weight or a sign."""
-
-    PLAIN = "plain"
-    STRONG = "strong"
-    FAINT = "faint"
-    PASS = "pass"
-    FAIL = "fail"
-    WARN = "warn"
-    STATED = "stated"
-    DERIVED = "derived"
-    ASSUMED = "assumed"
 
 
 @dataclass(frozen=True)
@@ -71,6 +57,8 @@ PAGE_ROWS = 300
 """Rows of a table that a page shows: the freedoms of a thousand bodies were a megabyte that nobody reads."""
 
 Content: TypeAlias = str | Cell
+NO_UNITS: Mapping[Field, Sequence[str]] = MappingProxyType({})
+NO_NAMES: Mapping[str, Iterable[Any]] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -133,18 +121,44 @@ def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iter
     """
     sheet = rows_of(source)
     told = {each.name: each for each in sheet.columns}
-    chosen = [told[name] for name in fields] if fields else [each for each, values in sheet.columns.items() if all(map(is_cell, values))]
     names = {head or each: values for each, values in sheet.names.items()}
-    return sheet_table(title, Sheet(names, {each: sheet.columns[each] for each in chosen}), notes=notes, provenance=provenance)
+    if not fields:
+        shown = {each: values for each, values in sheet.columns.items() if all(map(is_cell, values))}
+        return sheet_table(title, Sheet(names, shown), notes=notes, provenance=provenance)
+    records = tuple(source.values()) if isinstance(source, Mapping) else source if isinstance(source, Sequence) else ()
+    found = [_column_at(records, name) if records else (told[name], sheet.columns[told[name]], ()) for name in fields]
+    known = [each for each in found if any(value is not None for value in each[1])]
+    shown = Sheet(names, {field: values for field, values, _ in known})
+    return sheet_table(title, shown, units={field: units for field, _, units in known}, notes=notes, provenance=provenance)
 
 
-def sheet_table(title: str, sheet: Sheet, *, notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """Rows and columns of a result, names first."""
+def _column_at(records: Sequence[Any], path: str) -> tuple[Field, tuple[Any, ...], tuple[str, ...]]:
+    """The field at a path in records, its values, and their units where another field has them."""
+    name, _, rest = path.partition(".")
+    values = tuple(None if each is None else getattr(each, name) for each in records)
+    if rest and any(value is not None for value in values):
+        field, values, units = _column_at(values, rest)
+        return replace(field, name=path), values, units
+    field = field_of(type(next(each for each in records if each is not None)), name)
+    beside = field.heading.unit_field
+    return field, values, tuple("" if each is None else getattr(each, beside) for each in records) if beside else ()
+
+
+def sheet_table(
+    title: str, sheet: Sheet, *, units: Mapping[Field, Sequence[str]] = NO_UNITS, notes: Iterable[str] = (), provenance: str = ""
+) -> Table:
+    """Rows and columns of a result, names first; `units` of fields whose numbers have one each."""
     names = [(Column(head, numeric=False), [Cell(str(each), Mark.STRONG) for each in values]) for head, values in sheet.names.items()]
-    columns = [*names, *(field_column(*each) for each in sheet.columns.items())]
+    columns = [*names, *(field_column(field, values, units.get(field, ())) for field, values in sheet.columns.items())]
     return make_table(
         title, [column for column, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes=notes, provenance=provenance
     )
+
+
+def array_table(title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = NO_NAMES, notes: Iterable[str] = ()) -> Table:
+    """Arrays of a record as columns, an entry a row; `names` of the rows by their head."""
+    columns = {field_of(type(record), name): tuple(getattr(record, name)) for name in fields}
+    return sheet_table(title, Sheet({head: tuple(each) for head, each in names.items()}, columns), notes=notes)
 
 
 def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
@@ -154,7 +168,7 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
     return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
 
 
-def result_table(source: Any, *, notes: Iterable[str] = ()) -> Table | None:
+def result_table(source: Any, *, notes: Iterable[str] = (), provenance: str = "") -> Table | None:
     """The table of a result, or of results in a sequence or by name, as `TABLE` of its class says; `None` where there is none.
 
     >>> from flexstage.analysis.workspace.drive import Drive
@@ -169,7 +183,7 @@ def result_table(source: Any, *, notes: Iterable[str] = ()) -> Table | None:
     layout, fields = one.TABLE, one.TABLE.fields.split()
     own = layout.notes if one is not source else (*layout.notes, *getattr(one, "notes", ()))
     title, *told = (text.format(self=one) for text in (layout.title, *own))
-    provenance = getattr(one, "provenance", "")
+    provenance = provenance or getattr(one, "provenance", "")
     if one is source and not any(field.axes for field in values_of(one)[0]):
         return record_table(title, one, *fields, notes=[*told, *notes], provenance=provenance)
     return row_table(title, source, *fields, head=layout.head, notes=[*told, *notes], provenance=provenance)
@@ -217,8 +231,8 @@ def further(rest: int) -> str:
     return f"{rest} further rows."
 
 
-def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:
-    """The column of a field and its cells, for tables that stand beside others' columns.
+def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ()) -> tuple[Column, list[Cell]]:
+    """The column of a field and its cells, for tables that stand beside others' columns; `units` where each number has its own.
 
     >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
@@ -229,14 +243,42 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     >>> [cell.text for cell in field_column(Field("after", float, ()), [2.1e11, 1.6e-3])[1]]
     ['2.1e11', '0.0016']
     """
+    column, cells = _plain_column(field, values, units)
+    mark = field.heading.mark
+    if mark is None:
+        return column, cells
+    return column, [cell if value is None else replace(cell, mark=mark(value)) for cell, value in zip(cells, values, strict=True)]
+
+
+def interval_text(low: float, high: float) -> str:
+    """An interval, its ends to two significant digits of its width.
+
+    >>> interval_text(118.0101, 118.0145), interval_text(1.0, float("inf"))
+    ('118.0101 to 118.0145', '-')
+    """
+    width = high - low
+    if not np.isfinite(width):
+        return NO_VALUE
+    decimals = int(np.clip(1 - np.floor(np.log10(width)), 0, 6)) if width > 0.0 else 4
+    return f"{low:.{decimals}f} to {high:.{decimals}f}"
+
+
+def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> tuple[Column, list[Cell]]:
+    """The column of a field and its cells, not graded."""
     heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
+    if field.type == tuple[float, float]:
+        ends = [NO_VALUE if each is None else interval_text(*(form.factor * end for end in each)) for each in values]
+        return Column(heading.text, form.unit), [Cell(text) for text in ends]
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
         return Column(heading.text, numeric=False), [Cell(_cell_text(each)) for each in values]
     numbers = np.array([np.nan if each is None else float(first_design(each, 0)) for each in values])
-    if heading.varying:
+    if units:
+        cells = [Cell(format_value(each, unit, heading.digits or DIGITS)) for each, unit in zip(numbers.tolist(), units, strict=True)]
+    elif heading.varying:
         cells = [Cell(format_value(each, field.unit, heading.digits or DIGITS)) for each in _zero_noise(numbers).tolist()]
     elif form.unit == "%":
-        cells = [Cell(percent(each, heading.digits or 4), bar=each) for each in _zero_noise(numbers, 1.0).tolist()]
+        shares = _zero_noise(numbers, 1.0).tolist()
+        cells = [Cell(percent(each, heading.digits or 4), bar=each if field.annotation(Quantity) == SHARE else None) for each in shares]
     elif field.annotation(Quantity) is None:  # numbers of who knows what beside one another: none is noise against the others
         cells = [Cell(text, _mark_of(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
     else:
@@ -246,12 +288,14 @@ def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell
     outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
     cells = [replace(cell, mark=Mark.FAIL) if out else cell for cell, out in zip(cells, outside, strict=True)]
     cells = [replace(cell, text=heading.infinite) if np.isposinf(each) else cell for cell, each in zip(cells, numbers, strict=True)]
-    return Column(heading.text, "" if heading.varying or form.unit == "%" else form.unit), cells
+    return Column(heading.text, "" if units or heading.varying or form.unit == "%" else form.unit), cells
 
 
 def _cell_text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
+    if isinstance(value, tuple):
+        return ", ".join(map(_cell_text, value)) or NO_VALUE
     return NO_VALUE if value is None else str(plain_cell(value))
 
 
