@@ -104,8 +104,8 @@ class Heading:
 
     `text` stands over the column (absent: the name in words). `digits` are significant ones of each number (absent: decimals are
     aligned). `unit` is the display unit (absent: that of the quantity); a ratio may be shown in `%`. `varying`: each number has the unit
-    that suits it; `unit_field`: the SI unit of each number is in that field. `infinite` is the word for an infinite value. `mark` grades
-    a value.
+    that suits it; `unit_field`: the SI unit of each number is in that field. `infinite` is the word for an infinite value, `absent` for an
+    absent one. `mark` grades a value.
     """
 
     text: str = ""
@@ -114,6 +114,7 @@ class Heading:
     varying: bool = False
     infinite: str = "inf"
     unit_field: str = ""
+    absent: str = ""
     mark: Callable[[Any], Mark] | None = None
 
 
@@ -163,7 +164,7 @@ class Field:
         """How tables show it.
 
         >>> Field("blocking_force", float, (Heading(digits=4),)).heading
-        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', unit_field='', mark=None)
+        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', unit_field='', absent='', mark=None)
         """
         own = self.annotation(Heading) or Heading()
         return replace(own, text=own.text or self.words)

@@ -56,6 +56,7 @@ _LADDERS: dict[str, tuple[tuple[str, float], ...]] = {
     "N/Hz^0.5": (("N/Hz^0.5", 1.0),),
     "m/Hz^0.5": (("nm/Hz^0.5", 1e9),),
     "rad/Hz^0.5": (("nrad/Hz^0.5", 1e9),),
+    "%": (("%", 1e2),),
 }
 _PREFERRED = {
     "m": "um",

@@ -127,7 +127,7 @@ def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iter
         return sheet_table(title, Sheet(names, shown), notes=notes, provenance=provenance)
     records = tuple(source.values()) if isinstance(source, Mapping) else source if isinstance(source, Sequence) else ()
     found = [_column_at(records, name) if records else (told[name], sheet.columns[told[name]], ()) for name in fields]
-    known = [each for each in found if any(value is not None for value in each[1])]
+    known = [each for each in found if each[0].heading.absent or any(value is not None for value in each[1])]
     shown = Sheet(names, {field: values for field, values, _ in known})
     return sheet_table(title, shown, units={field: units for field, _, units in known}, notes=notes, provenance=provenance)
 
@@ -138,7 +138,7 @@ def _column_at(records: Sequence[Any], path: str) -> tuple[Field, tuple[Any, ...
     values = tuple(None if each is None else getattr(each, name) for each in records)
     if rest and any(value is not None for value in values):
         field, values, units = _column_at(values, rest)
-        return replace(field, name=path), values, units
+        return replace(field, name=path, annotations=(field.heading, *field.annotations)), values, units
     field = field_of(type(next(each for each in records if each is not None)), name)
     beside = field.heading.unit_field
     return field, values, tuple("" if each is None else getattr(each, beside) for each in records) if beside else ()
@@ -147,9 +147,11 @@ def _column_at(records: Sequence[Any], path: str) -> tuple[Field, tuple[Any, ...
 def sheet_table(
     title: str, sheet: Sheet, *, units: Mapping[Field, Sequence[str]] = NO_UNITS, notes: Iterable[str] = (), provenance: str = ""
 ) -> Table:
-    """Rows and columns of a result, names first; `units` of fields whose numbers have one each."""
+    """Rows and columns of a result, names first, else the first field for them; `units` of fields whose numbers have one each."""
     names = [(Column(head, numeric=False), [Cell(str(each), Mark.STRONG) for each in values]) for head, values in sheet.names.items()]
     columns = [*names, *(field_column(field, values, units.get(field, ())) for field, values in sheet.columns.items())]
+    if columns and not names:
+        columns[0] = columns[0][0], [replace(cell, mark=Mark.STRONG) if cell.mark is Mark.PLAIN else cell for cell in columns[0][1]]
     return make_table(
         title, [column for column, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes=notes, provenance=provenance
     )
@@ -244,10 +246,11 @@ def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ())
     ['2.1e11', '0.0016']
     """
     column, cells = _plain_column(field, values, units)
-    mark = field.heading.mark
-    if mark is None:
-        return column, cells
-    return column, [cell if value is None else replace(cell, mark=mark(value)) for cell, value in zip(cells, values, strict=True)]
+    heading = field.heading
+    missing = Cell(heading.absent, Mark.WARN) if heading.absent else Cell(NO_VALUE, Mark.FAINT)
+    mark = heading.mark
+    graded = [cell if mark is None or value is None else replace(cell, mark=mark(value)) for cell, value in zip(cells, values, strict=True)]
+    return column, [missing if value is None else cell for cell, value in zip(graded, values, strict=True)]
 
 
 def interval_text(low: float, high: float) -> str:
@@ -266,7 +269,7 @@ def interval_text(low: float, high: float) -> str:
 def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> tuple[Column, list[Cell]]:
     """The column of a field and its cells, not graded."""
     heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
-    if field.type == tuple[float, float]:
+    if field.type == tuple[float, float] and all(each is None or isinstance(each, tuple) for each in values):
         ends = [NO_VALUE if each is None else interval_text(*(form.factor * end for end in each)) for each in values]
         return Column(heading.text, form.unit), [Cell(text) for text in ends]
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
