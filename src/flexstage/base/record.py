@@ -84,7 +84,7 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Graded:
-    """Grades a number by its size: passed up to `good`, a warning up to `poor`, failed beyond."""
+    """Grades a number: passed up to the size `good`, a warning up to `poor`, failed beyond; where `good` exceeds `poor`, more is better."""
 
     good: float
     poor: float = float("inf")
@@ -94,8 +94,11 @@ class Graded:
 
         >>> [Graded(0.02, 0.1)(value).value for value in (-0.01, 0.05, -0.2)]
         ['pass', 'warn', 'fail']
+        >>> [Graded(0.9, 0.5)(value).value for value in (0.95, 0.6, 0.1)]
+        ['pass', 'warn', 'fail']
         """
-        return Mark.PASS if abs(value) <= self.good else Mark.WARN if abs(value) <= self.poor else Mark.FAIL
+        good, poor = (value >= limit if self.good > self.poor else abs(value) <= limit for limit in (self.good, self.poor))
+        return Mark.PASS if good else Mark.WARN if poor else Mark.FAIL
 
 
 @dataclass(frozen=True)
@@ -222,14 +225,19 @@ def walked_fields(kind: type) -> tuple[Field, ...]:
     return tuple(Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *views))
 
 
-def field_of(kind: type, name: str) -> Field:
-    """A field or property of a class by its name, also one that documents do not hold (`INNER`).
+def field_of(kind: type, path: str) -> Field:
+    """A field or property of a class, or of a result within it, also one that documents do not hold (`INNER`).
 
-    >>> field_of(Field, "meaning").heading.text
-    'meaning'
+    >>> field_of(Field, "heading.digits").heading.text
+    'digits'
     """
+    name, _, rest = path.partition(".")
     hints = get_type_hints(kind, include_extras=True) | {each: hint for each, hint, _ in _properties(kind)}
-    return Field(name, *_unwrap(hints[name]))
+    field = Field(name, *_unwrap(hints[name]))
+    if not rest:
+        return field
+    inner = field_of(next(part for part in (*get_args(field.type), field.type) if isinstance(part, type)), rest)
+    return replace(inner, name=path, annotations=(inner.heading, *inner.annotations))
 
 
 def _unwrap(hint: Any) -> tuple[Any, tuple[Any, ...]]:

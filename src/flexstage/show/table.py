@@ -57,8 +57,6 @@ PAGE_ROWS = 300
 """Rows of a table that a page shows: the freedoms of a thousand bodies were a megabyte that nobody reads."""
 
 Content: TypeAlias = str | Cell
-NO_UNITS: Mapping[Field, Sequence[str]] = MappingProxyType({})
-NO_NAMES: Mapping[str, Iterable[Any]] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -125,31 +123,29 @@ def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iter
     if not fields:
         shown = {each: values for each, values in sheet.columns.items() if all(map(is_cell, values))}
         return sheet_table(title, Sheet(names, shown), notes=notes, provenance=provenance)
-    records = tuple(source.values()) if isinstance(source, Mapping) else source if isinstance(source, Sequence) else ()
-    found = [_column_at(records, name) if records else (told[name], sheet.columns[told[name]], ()) for name in fields]
-    known = [each for each in found if each[0].heading.absent or any(value is not None for value in each[1])]
-    shown = Sheet(names, {field: values for field, values, _ in known})
-    return sheet_table(title, shown, units={field: units for field, _, units in known}, notes=notes, provenance=provenance)
+    records = tuple(source.values()) if isinstance(source, Mapping) else source
+    if isinstance(records, Sequence):
+        found = [field_of(type(records[0]), name) for name in fields]
+        columns = {each: tuple(_value_of(record, each) for record in records) for each in found}
+    else:
+        columns = {told[name]: sheet.columns[told[name]] for name in fields}
+    known = {each: values for each, values in columns.items() if each.heading.absent or any(value is not None for value in values)}
+    return sheet_table(title, Sheet(names, known), notes=notes, provenance=provenance)
 
 
-def _column_at(records: Sequence[Any], path: str) -> tuple[Field, tuple[Any, ...], tuple[str, ...]]:
-    """The field at a path in records, its values, and their units where another field has them."""
-    name, _, rest = path.partition(".")
-    values = tuple(None if each is None else getattr(each, name) for each in records)
-    if rest and any(value is not None for value in values):
-        field, values, units = _column_at(values, rest)
-        return replace(field, name=path, annotations=(field.heading, *field.annotations)), values, units
-    field = field_of(type(next(each for each in records if each is not None)), name)
-    beside = field.heading.unit_field
-    return field, values, tuple("" if each is None else getattr(each, beside) for each in records) if beside else ()
+def _value_of(record: Any, field: Field) -> Any:
+    """The value of a record, or of a record within it; a number whose unit is in a field beside it as text."""
+    *owners, name = field.name.split(".")
+    for each in owners:
+        record = getattr(record, each, None)
+    value, beside = getattr(record, name, None), field.heading.unit_field
+    return value if value is None or not beside else format_value(value, getattr(record, beside), field.heading.digits or DIGITS)
 
 
-def sheet_table(
-    title: str, sheet: Sheet, *, units: Mapping[Field, Sequence[str]] = NO_UNITS, notes: Iterable[str] = (), provenance: str = ""
-) -> Table:
-    """Rows and columns of a result, names first, else the first field for them; `units` of fields whose numbers have one each."""
+def sheet_table(title: str, sheet: Sheet, *, notes: Iterable[str] = (), provenance: str = "") -> Table:
+    """Rows and columns of a result, names first, else the first field for them."""
     names = [(Column(head, numeric=False), [Cell(str(each), Mark.STRONG) for each in values]) for head, values in sheet.names.items()]
-    columns = [*names, *(field_column(field, values, units.get(field, ())) for field, values in sheet.columns.items())]
+    columns = [*names, *(field_column(*each) for each in sheet.columns.items())]
     if columns and not names:
         columns[0] = columns[0][0], [replace(cell, mark=Mark.STRONG) if cell.mark is Mark.PLAIN else cell for cell in columns[0][1]]
     return make_table(
@@ -157,7 +153,9 @@ def sheet_table(
     )
 
 
-def array_table(title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = NO_NAMES, notes: Iterable[str] = ()) -> Table:
+def array_table(
+    title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = MappingProxyType({}), notes: Iterable[str] = ()
+) -> Table:
     """Arrays of a record as columns, an entry a row; `names` of the rows by their head."""
     columns = {field_of(type(record), name): tuple(getattr(record, name)) for name in fields}
     return sheet_table(title, Sheet({head: tuple(each) for head, each in names.items()}, columns), notes=notes)
@@ -233,8 +231,8 @@ def further(rest: int) -> str:
     return f"{rest} further rows."
 
 
-def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ()) -> tuple[Column, list[Cell]]:
-    """The column of a field and its cells, for tables that stand beside others' columns; `units` where each number has its own.
+def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:
+    """The column of a field and its cells, for tables that stand beside others' columns.
 
     >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
@@ -245,7 +243,7 @@ def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ())
     >>> [cell.text for cell in field_column(Field("after", float, ()), [2.1e11, 1.6e-3])[1]]
     ['2.1e11', '0.0016']
     """
-    column, cells = _plain_column(field, values, units)
+    column, cells = _plain_column(field, values)
     heading = field.heading
     missing = Cell(heading.absent, Mark.WARN) if heading.absent else Cell(NO_VALUE, Mark.FAINT)
     mark = heading.mark
@@ -266,18 +264,16 @@ def interval_text(low: float, high: float) -> str:
     return f"{low:.{decimals}f} to {high:.{decimals}f}"
 
 
-def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> tuple[Column, list[Cell]]:
+def _plain_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:
     """The column of a field and its cells, not graded."""
     heading, form = field.heading, display_unit(field.annotation(Quantity), field.heading.unit)
     if field.type == tuple[float, float] and all(each is None or isinstance(each, tuple) for each in values):
         ends = [NO_VALUE if each is None else interval_text(*(form.factor * end for end in each)) for each in values]
         return Column(heading.text, form.unit), [Cell(text) for text in ends]
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
-        return Column(heading.text, numeric=False), [Cell(_cell_text(each)) for each in values]
+        return Column(heading.text, numeric=bool(heading.unit_field)), [Cell(_cell_text(each)) for each in values]
     numbers = np.array([np.nan if each is None else float(first_design(each, 0)) for each in values])
-    if units:
-        cells = [Cell(format_value(each, unit, heading.digits or DIGITS)) for each, unit in zip(numbers.tolist(), units, strict=True)]
-    elif heading.varying:
+    if heading.varying:
         cells = [Cell(format_value(each, field.unit, heading.digits or DIGITS)) for each in _zero_noise(numbers).tolist()]
     elif form.unit == "%":
         shares = _zero_noise(numbers, 1.0).tolist()
@@ -291,7 +287,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
     outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
     cells = [replace(cell, mark=Mark.FAIL) if out else cell for cell, out in zip(cells, outside, strict=True)]
     cells = [replace(cell, text=heading.infinite) if np.isposinf(each) else cell for cell, each in zip(cells, numbers, strict=True)]
-    return Column(heading.text, "" if units or heading.varying or form.unit == "%" else form.unit), cells
+    return Column(heading.text, "" if heading.varying or form.unit == "%" else form.unit), cells
 
 
 def _cell_text(value: Any) -> str:
