@@ -139,7 +139,9 @@ def _value_of(record: Any, field: Field) -> Any:
     for each in owners:
         record = getattr(record, each, None)
     value, beside = getattr(record, name, None), field.heading.unit_field
-    return value if value is None or not beside else format_value(value, getattr(record, beside), field.heading.digits or DIGITS)
+    if value is None or not beside:
+        return value
+    return None if np.isnan(value) else format_value(value, getattr(record, beside), field.heading.digits or DIGITS)
 
 
 def sheet_table(title: str, sheet: Sheet, *, notes: Iterable[str] = (), provenance: str = "") -> Table:
