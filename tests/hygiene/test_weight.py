@@ -17,13 +17,13 @@ CEILINGS = {
     "models": 113_800,
     "analysis": 68_600,
     "show": 77_600,
-    "solid": 80_600,
-    "experiment": 104_500,
+    "solid": 80_100,
+    "experiment": 103_200,
     "control": 174_200,
-    "studies": 55_300,
+    "studies": 55_100,
     "apps": 38_900,
     ".": 400,
-    "all": 890_400,
+    "all": 889_700,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

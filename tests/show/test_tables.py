@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from dataclasses import dataclass, fields, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import pytest
@@ -20,8 +20,8 @@ from flexstage.analysis.linear_statics.units import units
 from flexstage.analysis.loaded.stability import Stability
 from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.analysis.workspace.workspace import Workspace
-from flexstage.base.record import Along, Heading
-from flexstage.base.units.quantity import FORCE, SHARE, Bound
+from flexstage.base.record import INNER, Along, Graded, Heading, Layout, walk
+from flexstage.base.units.quantity import FORCE, FREQUENCY, RATIO, SHARE, Bound
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import set_value
@@ -30,7 +30,7 @@ from flexstage.models.lumped import lumped
 from flexstage.show.display import to_typography
 from flexstage.show.page import Abreast, Folded
 from flexstage.show.render import fold, to_html, to_rich
-from flexstage.show.table import Column, Mark, Table, make_table, record_table, row_table
+from flexstage.show.table import Column, Mark, Table, make_table, record_table, result_table, row_table
 from flexstage.show.tables.description import value_tables
 from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
@@ -247,6 +247,54 @@ def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:
     assert record_table("Stage", replace(one, links=()), "weakest").texts()[1:] == [["weakest", "-", ""]]
     unknown = _Pressed(("a", "b"), np.array([1.0, np.nan]), np.array([np.nan, 0.5]), (Ends.FREE, Ends.FREE))
     assert [row[1:3] for row in row_table("Bars", unknown).texts()[1:]] == [["1", "-"], ["-", "50 %"]]
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A measured value and its interval."""
+
+    value: Annotated[float, FREQUENCY, Heading("seen", absent="not found")]
+    ends: Annotated[tuple[float, float], FREQUENCY, Heading("interval")]
+
+
+@dataclass(frozen=True)
+class _Figure:
+    """A number with a unit of its own, and what was seen of it."""
+
+    TABLE: ClassVar[Layout] = Layout("Figures of {self.group}", "name value off other seen.value seen.ends doubled")
+
+    group: str
+    name: str
+    unit: str
+    value: Annotated[float | None, Heading(unit_field="unit")]
+    off: Annotated[float | None, RATIO, Heading(unit="%", mark=Graded(0.02, 0.1))]
+    seen: _Seen | None = None
+    other: float | None = None
+
+    @property
+    def doubled(self) -> Annotated[int, INNER]:
+        """For tables alone."""
+        return 2 * len(self.name)
+
+
+def test_a_layout_reaches_into_results_with_units_grades_and_words_for_what_is_absent() -> None:
+    rows = (
+        _Figure("a", "k", "N/m", 2e7, 0.01, _Seen(118.0, (117.95, 118.05))),
+        _Figure("a", "f", "Hz", None, -0.05),
+        _Figure("a", "m", "kg", 1.5, 0.2),
+    )
+    table = result_table(rows, notes=["said"])
+    assert table is not None
+    assert (table.title, table.notes) == ("Figures of a", ("said",))
+    assert table.texts() == [
+        ["name", "value", "off", "seen [Hz]", "interval [Hz]", "doubled"],  # no row has the other value
+        ["k", "20 N/um", "1 %", "118", "117.950 to 118.050", "2"],
+        ["f", "-", "-5 %", "not found", "-", "2"],
+        ["m", "1.5 kg", "20 %", "not found", "-", "2"],
+    ]
+    assert [row[2].mark for row in table.rows] == [Mark.PASS, Mark.WARN, Mark.FAIL]
+    assert "doubled" not in walk(rows[0])
+    assert result_table(()) is None
 
 
 def test_responses_that_are_only_rounding_are_0():
