@@ -14,7 +14,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import VIEW
 from flexstage.base.units.quantity import RATIO
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
@@ -46,7 +46,7 @@ class HingeStress(InNotebook):
     governing: tuple[str, ...] = ()
 
     @property
-    def allowed(self) -> Annotated[Array, INNER]:
+    def allowed(self) -> Annotated[Array, VIEW]:
         """The stress that counts as the limit (..., L) [Pa]."""
         return self.yield_stress if self.limit is None else self.limit
 

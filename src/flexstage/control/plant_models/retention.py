@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.number import Array
-from flexstage.base.record import INNER
+from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.plant_models.electronics import Hardware
 from flexstage.control.plant_models.plants import Plant
@@ -52,7 +52,7 @@ class Retention:
     retune: Annotated[bool, INNER] = False
 
     @property
-    def complete(self) -> Annotated[bool, INNER]:
+    def complete(self) -> Annotated[bool, VIEW]:
         """Whether the plant retains all modes that matter."""
         return int(np.sum(self.wanted)) <= self.retained
 
