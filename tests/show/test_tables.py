@@ -21,7 +21,7 @@ from flexstage.analysis.loaded.stability import Stability
 from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.record import INNER, Along, Graded, Heading, Layout, walk
-from flexstage.base.units.quantity import FORCE, FREQUENCY, RATIO, SHARE, Bound
+from flexstage.base.units.quantity import ANGLE, FORCE, FREQUENCY, RATIO, SHARE, Bound
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import set_value
@@ -237,6 +237,41 @@ def test_fields_say_how_they_are_shown() -> None:
     assert table.texts() == [["bar", "axial force [N]", "used", "kind"], ["a", "2.5", "150 %", "pinned"], ["b", "0", "0 %", "free"]]
     assert [row[2].mark for row in table.rows] == [Mark.FAIL, Mark.PLAIN]
     assert row_table("Bars", bars, "kind").texts()[0] == ["bar", "kind"]
+
+
+@dataclass(frozen=True)
+class _End:
+    """A value at a place."""
+
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Passed:
+    """Errors by axis after passes."""
+
+    TABLE: ClassVar[Layout] = Layout("Passes", "rms last.value", head="path, axis", notes=("In {self.axes}.", "Gain {self.gain:g}."))
+    axes: tuple[str, ...]
+    units: Annotated[tuple[str, ...], INNER]
+    rms: Annotated[np.ndarray, Along("axes"), Heading(unit_field="units")]
+    last: Annotated[_End, ANGLE, Heading("turn")]
+    gain: float
+
+
+def test_results_by_name_with_arrays_are_a_row_an_entry_each() -> None:
+    """Names of both stand before the row, what has one value a result is repeated, and notes that differ say of which result they are."""
+    one = _Passed(("x", "rz"), ("m", "rad"), np.array([2e-9, 3e-6]), _End(np.pi), 0.5)
+    table = result_table({"raster": one, "sine": replace(one, last=_End(0.0), gain=0.6)})
+    assert table is not None
+    assert table.texts() == [
+        ["path", "axis", "rms", "turn [deg]"],
+        ["raster", "x", "2 nm", "180"],
+        ["raster", "rz", "3 urad", "180"],
+        ["sine", "x", "2 nm", "0"],
+        ["sine", "rz", "3 urad", "0"],
+    ]
+    assert table.notes == ("In ('x', 'rz').", "raster: Gain 0.5.", "sine: Gain 0.6.")
+    assert row_table("Both", {("a", "b"): one.last, ("a", "c"): one.last}, "value", head="of, at").texts()[2] == ["a", "c", "3.1416"]
 
 
 def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:

@@ -126,8 +126,8 @@ class Layout:
     """The table of a result class, its `TABLE`: title, fields in their order (absent: all that a cell holds), head over names, notes.
 
     A field of a result within the result is `experiment.frequency`; fields without a value in any row are left out. Title and notes may
-    hold attributes of the result, as `{self.point}`; of several results, those of the first. A result adds notes that depend on its values
-    by a property `notes`.
+    hold attributes of the result, as `{self.point}`: of several results a title those of the first, notes by name those of each where they
+    differ. A result adds notes that depend on its values by a property `notes`.
     """
 
     title: str
@@ -228,6 +228,8 @@ def walked_fields(kind: type) -> tuple[Field, ...]:
 def field_of(kind: type, path: str) -> Field:
     """A field or property of a class, or of a result within it, also one that documents do not hold (`INNER`).
 
+    Within a field it has that one's quantity and heading, if none of its own.
+
     >>> field_of(Field, "heading.digits").heading.text
     'digits'
     """
@@ -237,7 +239,9 @@ def field_of(kind: type, path: str) -> Field:
     if not rest:
         return field
     inner = field_of(next(part for part in (*get_args(field.type), field.type) if isinstance(part, type)), rest)
-    return replace(inner, name=path, annotations=(inner.heading, *inner.annotations))
+    told = inner.annotation(Heading) or field.annotation(Heading) or Heading()
+    annotations = (replace(told, text=told.text or inner.words), *inner.annotations, *field.annotations)
+    return replace(inner, name=path, annotations=annotations)
 
 
 def _unwrap(hint: Any) -> tuple[Any, tuple[Any, ...]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
@@ -12,8 +13,8 @@ import numpy as np
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import Field, Mark, field_of, values_of
-from flexstage.base.storage.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
+from flexstage.base.record import Field, Mark, by_name, field_of, values_of
+from flexstage.base.storage.sheet import NUMBERS, Sheet, is_cell, owner_names, parts, plain_cell, rows_of
 from flexstage.base.units.quantity import SHARE, Bound, Quantity
 from flexstage.show.display import (
     DIGITS,
@@ -109,39 +110,60 @@ def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None 
 def row_table(title: str, source: Any, *fields: str, head: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
     """One row a record, or a name, and a column a field, headed by its name in words with its quantity's unit, or as its `Heading` says.
 
-    `source` is a mapping or sequence of records of one kind, or a record with arrays `Along` names. `fields` are those shown, in that order
-    (absent: all that a cell can hold); `head` stands over the names. What lies outside of a field's `Bound` is marked.
+    `source` is a mapping or sequence of records of one kind, or a record. Arrays `Along` names are a row a name. `fields` are those shown,
+    in that order (absent: all that a cell can hold); `head` stands over the names, `path, axis` over two. What lies outside of a field's
+    `Bound` is marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
     >>> row_table("Drive", Drive(("B1",), 1.5e-7 * one, 0.0 * one, 1e3 * one, 500.0 * one, 4e-7 * one), "gain", "low", "high").texts()
     [['actuator', 'gain [um/V]', 'low [V]', 'high [V]'], ['B1', '0.15', '0', '1000']]
     """
-    sheet = rows_of(source)
-    told = {each.name: each for each in sheet.columns}
-    names = {head or each: values for each, values in sheet.names.items()}
     if not fields:
+        sheet = rows_of(source)
         shown = {each: values for each, values in sheet.columns.items() if all(map(is_cell, values))}
-        return sheet_table(title, Sheet(names, shown), notes=notes, provenance=provenance)
-    records = tuple(source.values()) if isinstance(source, Mapping) else source
-    if isinstance(records, Sequence):
-        found = [field_of(type(records[0]), name) for name in fields]
-        columns = {each: tuple(_value_of(record, each) for record in records) for each in found}
-    else:
-        columns = {told[name]: sheet.columns[told[name]] for name in fields}
+        return sheet_table(title, Sheet(_headed(sheet.names, head), shown), notes=notes, provenance=provenance)
+    records = tuple(source.values()) if isinstance(source, Mapping) else source if isinstance(source, Sequence) else (source,)
+    found = [field_of(type(records[0]), name) for name in fields]
+    columns = {each: tuple(_value_of(record, each) for record in records) for each in found}
+    names, along = owner_names(source), next((each.along for each in found if each.along), None)
+    if along:
+        ends = [tuple(getattr(each, along)) for each in records]
+        counts = [len(each) for each in ends]
+        names = {name: _repeated(values, counts) for name, values in names.items()}
+        names[field_of(type(records[0]), along).words.removesuffix("s")] = tuple(chain.from_iterable(ends))
+        columns = {each: (_joined if each.along else _repeated)(values, counts) for each, values in columns.items()}
     known = {each: values for each, values in columns.items() if each.heading.absent or any(value is not None for value in values)}
-    return sheet_table(title, Sheet(names, known), notes=notes, provenance=provenance)
+    return sheet_table(title, Sheet(_headed(names, head), known), notes=notes, provenance=provenance)
+
+
+def _headed(names: Mapping[str, tuple[Any, ...]], head: str) -> dict[str, tuple[Any, ...]]:
+    """Names under the heads stated, one each, else under their own."""
+    return dict(zip(head.split(", ") if head else names, names.values(), strict=True))
+
+
+def _repeated(values: Iterable[Any], counts: Iterable[int]) -> tuple[Any, ...]:
+    return tuple(value for value, count in zip(values, counts, strict=True) for _ in range(count))
+
+
+def _joined(arrays: Iterable[Any], counts: Iterable[int]) -> tuple[Any, ...]:
+    """Arrays one after the other, of what is absent so many entries."""
+    return tuple(chain.from_iterable((None,) * count if array is None else array for array, count in zip(arrays, counts, strict=True)))
 
 
 def _value_of(record: Any, field: Field) -> Any:
-    """The value of a record, or of a record within it; a number whose unit is in a field beside it as text."""
+    """The value of a record, or of a record within it, an array by name; a number whose unit is in a field beside it as text."""
     *owners, name = field.name.split(".")
     for each in owners:
         record = getattr(record, each, None)
-    value, beside = getattr(record, name, None), field.heading.unit_field
-    if value is None or not beside:
+    value = None if name in getattr(record, "reasons", ()) else getattr(record, name, None)
+    value, heading = by_name(value) if field.along else value, field.heading
+    if value is None or not heading.unit_field:
         return value
-    return None if np.isnan(value) else format_value(value, getattr(record, beside), field.heading.digits or DIGITS)
+    units = getattr(record, heading.unit_field)
+    pairs = zip(value, units, strict=True) if field.along else [(value, units)]
+    texts = [None if np.isnan(each) else format_value(each, unit, heading.digits or DIGITS) for each, unit in pairs]
+    return texts if field.along else texts[0]
 
 
 def sheet_table(title: str, sheet: Sheet, *, notes: Iterable[str] = (), provenance: str = "") -> Table:
@@ -165,9 +187,11 @@ def array_table(
 
 def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
     """A record as rows of name, value and unit; `fields` as for `row_table`."""
-    told = {each.name: (each, value) for each, value in values_of(record)[0].items()}
-    chosen = [told[name] for name in fields] if fields else [each for each in told.values() if not each[0].axes and is_cell(each[1])]
-    return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
+    if fields:
+        columns = {field: (_value_of(record, field),) for field in (field_of(type(record), name) for name in fields)}
+    else:
+        columns = {each: (value,) for each, value in values_of(record)[0].items() if not each.axes and is_cell(value)}
+    return _vertical_table(title, Sheet({}, columns), notes, provenance)
 
 
 def result_table(source: Any, *, notes: Iterable[str] = (), provenance: str = "") -> Table | None:
@@ -182,13 +206,19 @@ def result_table(source: Any, *, notes: Iterable[str] = (), provenance: str = ""
     one = next(iter(several), None)
     if one is None:
         return None
-    layout, fields = one.TABLE, one.TABLE.fields.split()
-    own = layout.notes if one is not source else (*layout.notes, *getattr(one, "notes", ()))
-    title, *told = (text.format(self=one) for text in (layout.title, *own))
+    layout, fields, title = one.TABLE, one.TABLE.fields.split(), one.TABLE.title.format(self=one)
+    told = [*chain.from_iterable(_told(text, source, one) for text in layout.notes), *(getattr(one, "notes", ()) if one is source else ())]
     provenance = provenance or getattr(one, "provenance", "")
     if one is source and not any(field.axes for field in values_of(one)[0]):
         return record_table(title, one, *fields, notes=[*told, *notes], provenance=provenance)
     return row_table(title, source, *fields, head=layout.head, notes=[*told, *notes], provenance=provenance)
+
+
+def _told(text: str, source: Any, one: Any) -> list[str]:
+    """A note of a result, or of results by name, of each where they differ."""
+    notes = {name: text.format(self=each) for name, each in (source if isinstance(source, Mapping) else {"": one}).items()}
+    alike = dict.fromkeys(notes.values())
+    return list(alike) if len(alike) == 1 else [f"{name}: {note}" for name, note in notes.items()]
 
 
 def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
