@@ -19,7 +19,7 @@ CEILINGS = {
     "show": 77_600,
     "solid": 80_100,
     "experiment": 103_200,
-    "control": 174_200,
+    "control": 172_500,
     "studies": 55_100,
     "apps": 38_900,
     ".": 400,
