@@ -364,7 +364,7 @@ def matrix_table(title: str, matrix: Matrix, *, against: Matrix | None = None, f
 
 
 def unit_row_table(title: str, matrix: Matrix, *, heads: tuple[str, ...] = (), first: str = "along", notes: tuple[str, ...] = ()) -> Table:
-    """A matrix whose entries share a unit along each row: the unit stands in a column of its own.
+    """A matrix whose entries share a unit along each row: the unit stands in a column of its own; noise against the largest of it is 0.
 
     >>> unit_row_table("a", Matrix(np.array([[2e-6]]), ("x",), ("low",), (("m",),))).texts()
     [['along', 'unit', 'low'], ['x', 'um', '2']]
@@ -373,8 +373,9 @@ def unit_row_table(title: str, matrix: Matrix, *, heads: tuple[str, ...] = (), f
     values, units = first_design(matrix.values, 2), _entry_units(matrix)
     for name, line, unit in zip(matrix.rows, values, units, strict=True):
         alike = np.concatenate([other for other, its in zip(values, units, strict=True) if its[0] == unit[0]])
-        form = display_unit_of(unit[0], float(np.max(np.abs(alike[np.isfinite(alike)]), initial=0.0)))
-        rows.append((Cell(name, Mark.STRONG), _unit(form), *number_cells(line, form)))
+        largest = float(np.max(np.abs(alike[np.isfinite(alike)]), initial=0.0))
+        form = display_unit_of(unit[0], largest)
+        rows.append((Cell(name, Mark.STRONG), _unit(form), *number_cells(_zero_noise(line, largest), form)))
     return make_table(title, [first, "unit", *(Column(head) for head in heads or matrix.columns)], rows, notes=notes)
 
 

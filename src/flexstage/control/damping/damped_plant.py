@@ -62,6 +62,12 @@ class ActiveDamping:
     damping ratio of the modes that the loop feels most, as many as it has coordinates.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Remaining stiffness with IFF",
+        "left_at_rest softest softest_at",
+        notes=("Share of the platform's static stiffness at rest, and the lowest below the first mode.",),
+    )
+
     legs: tuple[str, ...]
     gain: Annotated[float, RATE]
     corner: Annotated[float, FREQUENCY]
@@ -69,9 +75,9 @@ class ActiveDamping:
     kept_below: Annotated[float, FREQUENCY]
     modes: tuple[DampedMode, ...]
     coordinates: tuple[str, ...]
-    left_at_rest: Annotated[Array, Along("coordinates")]
-    softest: Annotated[Array, Along("coordinates")]
-    softest_at: Annotated[Array, FREQUENCY, Along("coordinates")]
+    left_at_rest: Annotated[Array, Along("coordinates"), Heading("at rest", unit="%")]
+    softest: Annotated[Array, Along("coordinates"), Heading("lowest", unit="%")]
+    softest_at: Annotated[Array, FREQUENCY, Along("coordinates"), Heading("at frequency", digits=4)]
     law: Annotated[ForceFeedback, INNER]
     sensed: Annotated[tuple[Leg, ...], INNER]
     reached: float

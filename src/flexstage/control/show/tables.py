@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.base.labelled import Matrix
-from flexstage.base.number import Array
 from flexstage.base.record import walked_fields
 from flexstage.control.plant_models.retention import Retention
 from flexstage.control.study.choices import ControllerKind
@@ -17,7 +16,7 @@ from flexstage.control.study.rest import RestErrors
 from flexstage.control.study.runs import Run
 from flexstage.control.study.study import LoopStudy
 from flexstage.control.white_noise import Kind
-from flexstage.show.display import format_value, number, percent
+from flexstage.show.display import number, percent
 from flexstage.show.table import (
     Cell,
     Mark,
@@ -32,14 +31,14 @@ from flexstage.show.table import (
 )
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
-_SIGNIFICANT, _LEAST_DAMPED, _MOVED = 1e-3, 0.01, 1e-3
+_LEAST_DAMPED, _MOVED = 0.01, 1e-3
 _TRACKING = ("measured rms", "measured peak", "true rms", "true peak")
 _BY_COORDINATE = ("rejection", "noise", "settling", "overshoot")
 
 
 def loop_tables(found: LoopStudy) -> list[Table | None]:
     """The loop, and its parts: charge drive, force feedback, controller."""
-    return [loop_table(found), *_charge_tables(found), damping_table(found), *_controller_tables(found)]
+    return [loop_table(found), *_charge_tables(found), *_damping_tables(found), *_controller_tables(found)]
 
 
 def loop_table(found: LoopStudy) -> Table:
@@ -99,21 +98,14 @@ def _controller(found: LoopStudy) -> str:
     return f"{where}, notches at {', '.join(f'{each:g}' for each in frequencies)} Hz" if frequencies else where
 
 
-def damping_table(found: LoopStudy) -> Table | None:
-    """Integral force feedback by mode of the plant; `None` where there is none."""
+def _damping_tables(found: LoopStudy) -> list[Table | None]:
+    """Integral force feedback by mode of the plant, and the stiffness that remains."""
     inner = found.damping
     if inner is None:
-        return None
-    rest, least = (
-        ", ".join(f"{name} {percent(share)}" for name, share in zip(inner.coordinates, shares, strict=True))
-        for shares in (inner.left_at_rest, inner.softest)
-    )
+        return []
     corner = f"{number(inner.corner, 4)} Hz" + ("" if inner.rate is None else f", sampled at {number(1e-3 * inner.rate, 4)} kHz")
-    notes = [
-        f"Gain {number(inner.gain, 4)} 1/s, high pass of order {inner.order} at {corner}: {', '.join(inner.legs)}.",
-        f"Remaining static stiffness: {rest}. Least below the first mode: {least}.",
-    ]
-    return result_table([each for each in inner.modes if each.most > _LEAST_DAMPED], notes=notes)
+    note = f"Gain {number(inner.gain, 4)} 1/s, high pass of order {inner.order} at {corner}: {', '.join(inner.legs)}."
+    return [result_table([each for each in inner.modes if each.most > _LEAST_DAMPED], notes=[note]), result_table(inner)]
 
 
 def _charge_tables(found: LoopStudy) -> list[Table | None]:
@@ -186,8 +178,9 @@ def time_tables(runs: Sequence[Run]) -> list[Table | None]:
 
 def error_tables(found: LoopStudy) -> list[Table | None]:
     """Static errors without the loop, noise with it, hysteresis of the stacks."""
+    static = found.static_errors
     return [
-        None if found.static_errors is None else static_error_table(found.static_errors),
+        *([] if static is None else [static_error_table(static), _load_table(static)]),
         noise_table(found),
         None if found.hysteresis is None else result_table(found.hysteresis),
     ]
@@ -200,21 +193,15 @@ def static_error_table(found: RestErrors) -> Table:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains
     largest = ", ".join(f"{name} {percent(each.largest, 3)}" for name, each in errors.items())
     notes = ["Commanded less reached, by the ideal mapping R_a.", f"Largest error, rotations as lengths: {largest}."]
-    if np.any(np.abs(found.load) > 0.0):
-        loads = f"{_twist(found.load, found.load)}; with load feedforward: {_twist(found.load_left, found.load)}"
-        notes.append(f"Deflection by loads, actuators fixed: {loads}.")
     return matrix_table("Static errors without the loop", found.ideal_map.error, notes=notes)
 
 
-def _twist(values: Array, against: Array) -> str:
-    """The components of a twist that are significant against another."""
-    scale = {unit: max(abs(float(value)) for value, each in zip(against, TWIST_UNITS, strict=True) if each == unit) for unit in TWIST_UNITS}
-    parts = [
-        f"{name} {format_value(float(value), unit, 3)}"
-        for name, value, unit in zip(COMPONENTS, values, TWIST_UNITS, strict=True)
-        if abs(value) > _SIGNIFICANT * scale[unit]
-    ]
-    return ", ".join(parts) or "none"
+def _load_table(found: RestErrors) -> Table | None:
+    """Deflection of the platform by its loads; `None` where there are none."""
+    if not np.any(found.load):
+        return None
+    values, units = np.stack([found.load, found.load_left], axis=-1), tuple((unit, unit) for unit in TWIST_UNITS)
+    return unit_row_table("Deflection by loads", Matrix(values, COMPONENTS, ("actuators fixed", "with load feedforward"), units))
 
 
 def noise_table(found: LoopStudy) -> Table:
