@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 55_100,
     "apps": 38_900,
     ".": 400,
-    "all": 889_700,
+    "all": 888_600,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
