@@ -46,7 +46,15 @@ def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Comm
     assert document["peaks"]["sensitivity"]["value"] < 2.0
     assert [run["course"]["name"] for run in document["runs"]] == ["x", "y", "z", "rx", "ry", "rz"]
     assert document["static_errors"]["lost_motion_gains"]["largest"] < 1e-9
-    for title in ("Loop", "Controller", "Bandwidth and margins", "Steps", "Static errors without the loop", "Noise at rest"):
+    for title in (
+        "Loop",
+        "Controller",
+        "Bandwidth",
+        "Stability margins",
+        "Steps",
+        "Static errors without the loop",
+        "Positioning noise, regulated",
+    ):
         assert f"{title}\n" in ended.out
     page = (tmp_path / "loop.html").read_text()
     curves = (

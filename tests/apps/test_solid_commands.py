@@ -96,7 +96,7 @@ def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.Monk
         assert plan < max(at[name] for name in at if name.startswith("hinge")) < at["stage"]
     assert command("verify", "stage.toml", *ROUGH).err.startswith("to do: nothing, ")
     assert "Which to trust" in ended.out
-    assert "Stage: theory and finite elements" in ended.out
+    assert "Theory and finite elements: stage" in ended.out
     assert "Theory and finite elements" in (tmp_path / "v.html").read_text(encoding="utf-8")
 
 

@@ -49,7 +49,7 @@ def test_update_writes_a_new_file_and_a_document(recorded: Command, tmp_path: Pa
 def test_tables_say_what_the_test_tells(recorded: Command) -> None:
     ended = recorded("update", "stage.toml", "--record", "record.uff", *FREE, "-o", "updated.toml")
     assert ended.code == 0, ended.err
-    for title in ("Numbers after the test", "Theory and test", "Correlations after the test", "Combinations that the test tells"):
+    for title in ("Numbers after the test", "Theory and test", "Correlations after the test", "Identifiable combinations"):
         assert title in ended.out
     assert "identified" in ended.out
     assert recorded("check", "updated.toml").code == 0

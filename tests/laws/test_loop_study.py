@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,17 +13,15 @@ from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.workspace.drive import drive
 from flexstage.analysis.workspace.small import second_order
 from flexstage.base.finding import DesignError
-from flexstage.base.labelled import Matrix
 from flexstage.base.storage.document import plain
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
 from flexstage.control.plant_models.coordinates import coordinates
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
-from flexstage.control.show.error_tables import _error_and_crosstalk, noise_table
 from flexstage.control.show.playing import response_motions
 from flexstage.control.show.sections import margin_spots, time_section
-from flexstage.control.show.tables import margin_table, step_table
+from flexstage.control.show.tables import margin_tables, noise_table, static_error_table, time_tables
 from flexstage.control.simulation.result import other_motions
 from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
 from flexstage.control.study.course import courses, sampled_course
@@ -52,7 +49,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.parts.gauge import Gauge
-from flexstage.show.display import NO_VALUE, format_value
+from flexstage.show.display import percent
 from flexstage.show.page import Prose
 from flexstage.show.viewer.data import stage_data
 from flexstage.solid.results.modes import fea_modes
@@ -92,7 +89,9 @@ def test_margins_are_marked_where_the_open_loop_has_them() -> None:
     for spot in spots:
         opened = 1.0 / found.curves.response.at(np.array([spot.x]))[0, 0, 0] - 1.0
         assert spot.y == pytest.approx(abs(opened), rel=1e-6)
-    told = dict(zip(*margin_table(found).texts(), strict=True))
+    table = margin_tables(found)[1]
+    assert table is not None
+    told = dict(zip(*table.texts(), strict=True))
     assert found.margins is not None
     own = found.margins.of("x")
     assert float(told["delay margin [ms]"]) == pytest.approx(1e3 * own.delay.value, rel=1e-3)
@@ -151,15 +150,12 @@ def test_rasters_and_spirals_go_along_any_two_motions() -> None:
             assert [name for name, each in zip(loops.names, moved, strict=True) if each] == sorted(course.plane, key=loops.names.index)
 
 
-def test_crosstalk_is_told_in_every_unit() -> None:
-    """The largest of lengths and of angles, each, whatever their numbers in metres and radians are."""
-    units = (("1", "m/rad"), ("1", "m/rad"), ("rad/m", "1"))
-    error = Matrix(np.array([[0.01, 0.0], [0.002, 0.0], [5.0, 0.0]]), ("x", "y", "rz"), ("x", "rz"), units)
-    own, others = _error_and_crosstalk([SimpleNamespace(error=error)], 0)
-    assert own.text == "1 %"
-    assert others.text.startswith("0.2 % y, 5 ")
-    assert others.text.endswith(" rz")
-    assert list(_error_and_crosstalk([SimpleNamespace(error=error)], 1))[1].text == NO_VALUE
+def test_static_errors_are_by_coordinate_reached_and_commanded() -> None:
+    found = _calm().static_errors
+    assert found is not None
+    table = static_error_table(found)
+    assert float(table.rows[0][1].text) == pytest.approx(found.ideal_map.error.at("x", "x").item(), rel=1e-4)
+    assert any(f"ideal mapping R_a {percent(found.ideal_map.largest, 3)}" in note for note in table.notes)
 
 
 def test_rates_are_round_and_fast_enough() -> None:
@@ -259,10 +255,12 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
     assert any("rounding is slow" in each.what for each in found.warnings)
     table = noise_table(found)
     assert [column.head for column in table.columns] == [
-        "motion",
+        "coordinate",
+        "unit",
         "rms",
-        "interval",
-        "as if white",
+        "95 %, low",
+        "95 %, high",
+        "white quantisation",
         "floor",
         "gauge noise",
         "gauge rounding",
@@ -315,9 +313,10 @@ def test_steps_tell_what_every_other_axis_does() -> None:
         assert each.largest == np.max(np.abs(run.simulated.motion(f"relative.{name}")))
     turned = max((each.largest, name) for name, each in told.items() if each.unit == "rad")
     assert turned[0] > 1e-9
-    table = step_table(found.runs)
-    (cell,) = (row[[column.head for column in table.columns].index("others move")].text for row in table.rows)
-    assert cell.endswith(f"{format_value(turned[0], 'rad', 3)} {turned[1]}")
+    table = time_tables(found.runs)[0]
+    assert table is not None
+    (cell,) = (row[[column.head for column in table.columns].index("cross-axis error")].text for row in table.rows)
+    assert cell.endswith(f"{1e9 * turned[0]:.3g} nrad {turned[1]}")
     assert plain(found)["runs"][0]["step"]["others"][turned[1]]["largest"] == turned[0]
 
 

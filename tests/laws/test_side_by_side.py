@@ -14,7 +14,7 @@ from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.noise import noise_budget
 from flexstage.control.robustness.stability_margins import bandwidths, peaks
 from flexstage.control.show.report import comparison_report
-from flexstage.control.show.tables import comparison_table
+from flexstage.control.show.tables import comparison_tables
 from flexstage.control.study.choices import ControllerKind, Criterion
 from flexstage.control.study.compare import Comparison, DetunedController, Rival, compare_controllers
 from flexstage.control.study.compare import rival as rival_of
@@ -48,8 +48,9 @@ def test_the_front_is_what_no_other_beats_at_once():
         "settling": "pi",
         "delay margin": "pid",
     }
-    shown = comparison_table(found)
-    assert any("not" in str(row) for row in shown.rows)
+    shown = comparison_tables(found)[0]
+    assert shown is not None
+    assert [row[3].text for row in shown.rows] == ["20", "30", "30", "not settled"]
 
 
 def test_noise_that_nothing_makes_is_won_by_none():
@@ -114,7 +115,7 @@ def test_the_report_has_the_front_and_every_motion():
         {},
     )
     page = comparison_report(parallelogram(), LoopSetup(), found)
-    assert "Motion by motion" in page
+    assert "Comparison by coordinate" in page
     assert "delay margin [ms]" in page
 
 

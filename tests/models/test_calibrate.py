@@ -279,7 +279,8 @@ def test_what_is_not_known_gets_no_verdict() -> None:
         assert body["reason"] == row.reason
         assert body["fea_error"] is row.fea_error
         assert body["theory"] is row.theory
-        table = verification_table("stage", (row,))
+        table = verification_table((row,))
+        assert table is not None
         assert "0 %" not in table.texts()[1]
         assert any(row.reason in note for note in table.notes)
     both = verdict((known, without_partner))

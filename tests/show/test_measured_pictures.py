@@ -16,7 +16,6 @@ from flexstage.experiment.comparison import FurtherMode, compare
 from flexstage.experiment.pipeline import Identification, identification
 from flexstage.experiment.records.record import Channel, Responses, Role, in_memory
 from flexstage.experiment.show.comparison_figures import compare_figure
-from flexstage.experiment.show.comparison_tables import compare_table, further_table, off_cell, repeated_table
 from flexstage.experiment.show.figures import (
     coherence_figure,
     estimator_figure,
@@ -25,11 +24,12 @@ from flexstage.experiment.show.figures import (
     stabilisation_figure,
 )
 from flexstage.experiment.show.report import identify_report
-from flexstage.experiment.show.tables import identified_table, interval_texts, measured_shape_table
+from flexstage.experiment.show.tables import identified_table, measured_shape_table
 from flexstage.experiment.spectral.cross_spectra import example_spectra
 from flexstage.experiment.spectral.transfer import h1
 from flexstage.models.lumped import lumped
 from flexstage.show.figures.export import to_svg
+from flexstage.show.table import result_table
 from tests.models.stage_records import stage_record
 
 STAGE = double_triangle()
@@ -121,36 +121,29 @@ def test_a_comparison_without_any_partner_is_drawn(seen: Identification) -> None
     found = compare(STAGE, identification((silent,)).found)
     assert all(row.experiment is None for row in found.modes)
     ET.fromstring(to_svg(compare_figure(found), "none", "no mode"))  # noqa: S314  our own text
-    assert compare_table(found).texts()[1][3] == "not found"
-    repeated = repeated_table(found)
+    modes, repeated = result_table(found.modes), result_table(found.repeated)
+    assert modes is not None
+    assert modes.texts()[1][3] == "not found"
     assert repeated is not None
-    assert repeated.texts()[1][1] == "0 of 2"
+    assert repeated.texts()[1][:2] == ["1, 2", "0"]
 
 
 def test_the_table_says_what_was_found(seen: Identification) -> None:
     rows = identified_table(seen.found).texts()[1:]
     assert [float(row[1]) for row in rows] == pytest.approx(seen.found.frequencies.tolist(), rel=1e-5)
-    assert rows[0][7] == "2"
+    assert "Modes 1 and 2 are closer than their half-widths: use their subspace." in identified_table(seen.found).notes
     shapes = measured_shape_table(seen.found).texts()[1:]
     assert np.array([[float(cell) for cell in row[1:]] for row in shapes]) == pytest.approx(seen.found.real_shapes, abs=1e-3)
 
 
 def test_modes_without_a_partner_are_listed(seen: Identification) -> None:
     found = compare(STAGE, seen.found)
-    assert further_table(found) is None
+    assert result_table(found.further) is None
     assert found.modes[0].experiment is not None
     extra = replace(found, further=(FurtherMode(found.modes[0].experiment),))
-    table = further_table(extra)
+    table = result_table(extra.further)
     assert table is not None
     assert table.texts()[1][0] == "1"
-
-
-def test_decimals_follow_the_interval() -> None:
-    values, intervals = np.array([100.0, 100.0, 100.0]), np.array([[99.0, 101.0], [99.999, 100.001], [100.0, np.inf]])
-    assert [text for text, _ in interval_texts(values, intervals)] == ["100.0", "100.0000", "100.0000"]
-    assert interval_texts(values, intervals)[2][1] == "-"
-    assert off_cell(None, None).text == "-"
-    assert off_cell(-0.2, 0.01).text == "-20.0 % +- 1.0 %"
 
 
 def test_names_are_escaped() -> None:

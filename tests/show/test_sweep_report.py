@@ -32,7 +32,7 @@ def swept(responses, failures=None, sampling="grid"):
 
 def told(study, results):
     tables = study_tables(Sweep(study, results, effects(results, study.plan)))
-    return "\n".join(str(line) for table in tables for line in (*table.texts(), *table.notes))
+    return "\n".join(str(line) for table in tables if table for line in (*table.texts(), *table.notes))
 
 
 def page_of(study, results):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from dataclasses import dataclass, fields, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import pytest
@@ -20,8 +20,8 @@ from flexstage.analysis.linear_statics.units import units
 from flexstage.analysis.loaded.stability import Stability
 from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.analysis.workspace.workspace import Workspace
-from flexstage.base.record import Along, Heading
-from flexstage.base.units.quantity import FORCE, SHARE, Bound
+from flexstage.base.record import INNER, Along, Graded, Heading, Layout, UnitIn, walk
+from flexstage.base.units.quantity import ANGLE, FORCE, FREQUENCY, RATIO, SHARE, Bound
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import set_value
@@ -235,6 +235,41 @@ def test_fields_say_how_they_are_shown() -> None:
     assert row_table("Bars", bars, "kind").texts()[0] == ["bar", "kind"]
 
 
+@dataclass(frozen=True)
+class _End:
+    """A value at a place."""
+
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Passed:
+    """Errors by axis after passes."""
+
+    TABLE: ClassVar[Layout] = Layout("Passes", "rms last.value", head="path, axis", notes=("In {self.axes}.", "Gain {self.gain:g}."))
+    axes: tuple[str, ...]
+    units: Annotated[tuple[str, ...], INNER]
+    rms: Annotated[np.ndarray, Along("axes"), UnitIn("units")]
+    last: Annotated[_End, ANGLE, Heading("turn")]
+    gain: float
+
+
+def test_results_by_name_with_arrays_are_a_row_an_entry_each() -> None:
+    """Names of both stand before the row, what has one value a result is repeated, and notes that differ say of which result they are."""
+    one = _Passed(("x", "rz"), ("m", "rad"), np.array([2e-9, 3e-6]), _End(np.pi), 0.5)
+    table = result_table({"raster": one, "sine": replace(one, last=_End(0.0), gain=0.6)})
+    assert table is not None
+    assert table.texts() == [
+        ["path", "axis", "rms", "turn [deg]"],
+        ["raster", "x", "2 nm", "180"],
+        ["raster", "rz", "3 urad", "180"],
+        ["sine", "x", "2 nm", "0"],
+        ["sine", "rz", "3 urad", "0"],
+    ]
+    assert table.notes == ("In ('x', 'rz').", "raster: Gain 0.5.", "sine: Gain 0.6.")
+    assert row_table("Both", {("a", "b"): one.last, ("a", "c"): one.last}, "value", head="of, at").texts()[2] == ["a", "c", "3.1416"]
+
+
 def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:
     rows = row_table("Units", units(case("parallelogram")), "axial", "series", "gain", head="unit")
     assert rows.texts()[0] == ["unit", "axial stiffness [N/um]", "in actuator coordinates [N/um]", "gain"]
@@ -243,6 +278,54 @@ def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:
     assert record_table("Stage", replace(one, links=()), "weakest").texts()[1:] == [["weakest", "-", ""]]
     unknown = _Pressed(("a", "b"), np.array([1.0, np.nan]), np.array([np.nan, 0.5]), (Ends.FREE, Ends.FREE))
     assert [row[1:3] for row in row_table("Bars", unknown).texts()[1:]] == [["1", "-"], ["-", "50 %"]]
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A measured value and its interval."""
+
+    value: Annotated[float, FREQUENCY, Heading("seen", absent="not found")]
+    ends: Annotated[tuple[float, float], FREQUENCY, Heading("interval")]
+
+
+@dataclass(frozen=True)
+class _Figure:
+    """A number with a unit of its own, and what was seen of it."""
+
+    TABLE: ClassVar[Layout] = Layout("Figures of {self.group}", "name value off other seen.value seen.ends doubled")
+
+    group: str
+    name: str
+    unit: str
+    value: Annotated[float | None, UnitIn("unit")]
+    off: Annotated[float | None, RATIO, Heading(unit="%", mark=Graded(0.02, 0.1))]
+    seen: _Seen | None = None
+    other: float | None = None
+
+    @property
+    def doubled(self) -> Annotated[int, INNER]:
+        """For tables alone."""
+        return 2 * len(self.name)
+
+
+def test_a_layout_reaches_into_results_with_units_grades_and_words_for_what_is_absent() -> None:
+    rows = (
+        _Figure("a", "k", "N/m", 2e7, 0.01, _Seen(118.0, (117.95, 118.05))),
+        _Figure("a", "f", "Hz", None, -0.05),
+        _Figure("a", "m", "kg", 1.5, 0.2),
+    )
+    table = result_table(rows, notes=["said"])
+    assert table is not None
+    assert (table.title, table.notes) == ("Figures of a", ("said",))
+    assert table.texts() == [
+        ["name", "value", "off", "seen [Hz]", "interval [Hz]", "doubled"],  # no row has the other value
+        ["k", "20 N/um", "1 %", "118", "117.950 to 118.050", "2"],
+        ["f", "-", "-5 %", "not found", "-", "2"],
+        ["m", "1.5 kg", "20 %", "not found", "-", "2"],
+    ]
+    assert [row[2].mark for row in table.rows] == [Mark.PASS, Mark.WARN, Mark.FAIL]
+    assert "doubled" not in walk(rows[0])
+    assert result_table(()) is None
 
 
 def test_responses_that_are_only_rounding_are_0():

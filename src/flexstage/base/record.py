@@ -75,13 +75,47 @@ class Called:
     key: str
 
 
+class Mark(Enum):
+    """What a cell means besides its text; a renderer shows it by colour, weight or a sign."""
+
+    PLAIN = "plain"
+    STRONG = "strong"
+    FAINT = "faint"
+    PASS = "pass"
+    FAIL = "fail"
+    WARN = "warn"
+    STATED = "stated"
+    DERIVED = "derived"
+    ASSUMED = "assumed"
+
+
+@dataclass(frozen=True)
+class Graded:
+    """Grades a number: `best` up to the size `good`, a warning up to `poor`, failed beyond; where `good` exceeds `poor`, more is better."""
+
+    good: float
+    poor: float = np.inf
+    best: Mark = Mark.PASS
+
+    def __call__(self, value: float) -> Mark:
+        """The grade; an unknown number fails.
+
+        >>> [Graded(0.02, 0.1)(value).value for value in (-0.01, 0.05, -0.2)]
+        ['pass', 'warn', 'fail']
+        >>> [Graded(0.9, 0.5)(value).value for value in (0.95, 0.6, 0.1)]
+        ['pass', 'warn', 'fail']
+        """
+        good, poor = (value >= limit if self.good > self.poor else abs(value) <= limit for limit in (self.good, self.poor))
+        return self.best if good else Mark.WARN if poor else Mark.FAIL
+
+
 @dataclass(frozen=True)
 class Heading:
     """How tables show a field where its name and its quantity do not say it.
 
     `text` stands over the column (absent: the name in words). `digits` are significant ones of each number (absent: decimals are
-    aligned). `unit` is the display unit (absent: that of the quantity). `varying`: each number has the unit that suits it. `infinite`
-    is the word for an infinite value. Values below `safe` are marked as warnings.
+    aligned). `unit` is the display unit (absent: that of the quantity); a ratio may be shown in `%`. `varying`: each number has the unit
+    that suits it. `infinite` is the word for an infinite value, `absent` for an absent one. `mark` grades a value.
     """
 
     text: str = ""
@@ -89,16 +123,17 @@ class Heading:
     unit: str = ""
     varying: bool = False
     infinite: str = "inf"
-    safe: float = -np.inf
+    absent: str = ""
+    mark: Callable[[Any], Mark] | None = None
 
 
 @dataclass(frozen=True)
 class Layout:
     """The table of a result class, its `TABLE`: title, fields in their order (absent: all that a cell holds), head over names, notes.
 
-    Fields may be paths (`requirement.key`) and `INNER`; of a labelled matrix, its columns are shown. Title and notes may hold attributes of
-    the result, as `{self.point}`; of several results, those of the first. A result adds notes that depend on its values by a property
-    `notes`. `order`: rows ascend by that field, unknown values first. `merged`: rows with equal cells are one.
+    Fields may be paths (`requirement.key`) and `INNER`; of a labelled matrix, its columns are shown; fields without a value in any row are
+    left out. Title and notes may hold attributes of the result, as `{self.point}`: of several results a title those of the first, notes by
+    name those of each where they differ. A result adds notes that depend on its values by a property `notes`. `order`: rows ascend by that field, unknown values first. `merged`: rows with equal cells are one.
     """
 
     title: str
@@ -140,7 +175,7 @@ class Field:
         """How tables show it.
 
         >>> Field("blocking_force", float, (Heading(digits=4),)).heading
-        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', safe=-inf)
+        Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', absent='', mark=None)
         """
         own = self.annotation(Heading) or Heading()
         return replace(own, text=own.text or self.words)
@@ -192,37 +227,52 @@ def key_with_unit(name: str, unit: str) -> str:
 
 @functools.cache
 def result_fields(kind: type) -> Mapping[str, Field]:
-    """All fields of results of that class by name, then its annotated properties; `INNER` ones too, which only tables show."""
+    """All fields of results of that class by name, then its properties; also those that only tables show."""
     hints = get_type_hints(kind, include_extras=True)
     own = [(each.name, hints[each.name], "") for each in fields(kind)]
-    views = [(name, hint, doc) for name, hint, doc in _properties(kind) if get_origin(hint) is Annotated]
-    return {name: Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *views)}
+    return {name: Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *_properties(kind))}
 
 
 @functools.cache
 def walked_fields(kind: type) -> tuple[Field, ...]:
-    """The fields of results of that class that documents hold: fields, then properties."""
+    """The fields of results of that class that documents hold: fields, then annotated properties."""
     own = {each.name for each in fields(kind)}
     found = {name: each for name, each in result_fields(kind).items() if name != "reasons"}
     return tuple(
-        each for name, each in found.items() if (_is_walked(each.type, each.annotations) if name in own else INNER not in each.annotations)
+        each
+        for name, each in found.items()
+        if (_is_walked(each.type, each.annotations) if name in own else each.annotations and INNER not in each.annotations)
     )
 
 
-def field_at(record: Any, path: str) -> tuple[Field, Any]:
-    """A field of a result by its name, or by its path through results within it, and its value; None where a reason says why.
+def field_of(kind: type, path: str) -> Field:
+    """A field of results of that class by its name, or by its path through results within it.
 
-    >>> @dataclass(frozen=True)
-    ... class Bar:
-    ...     "A bar."
-    ...     area: float
-    >>> field_at(Bar(2.0), "area")[1]
-    2.0
+    Within a field it has that one's quantity and heading, if none of its own.
+
+    >>> field_of(Field, "heading.digits").heading.text
+    'digits'
     """
-    *owners, name = path.split(".")
-    owner = functools.reduce(getattr, owners, record)
-    field = result_fields(type(owner))[name]
-    return field, None if name in getattr(owner, "reasons", ()) else field.of(owner)
+    name, _, rest = path.partition(".")
+    field = result_fields(kind)[name]
+    if not rest:
+        return field
+    inner = field_of(next(part for part in (*get_args(field.type), field.type) if isinstance(part, type)), rest)
+    told = inner.annotation(Heading) or field.annotation(Heading) or Heading()
+    annotations = (replace(told, text=told.text or inner.words), *inner.annotations, *field.annotations)
+    return replace(inner, name=path, annotations=annotations)
+
+
+def field_at(record: Any, path: str) -> tuple[Field, Any]:
+    """A field of a result as `field_of` finds it, and its value; None where it, or a result on the path, is absent.
+
+    >>> field_at(Field("mass", float, ()), "heading.text")[1]
+    'mass'
+    """
+    field = field_of(type(record), path)
+    for name in path.split("."):
+        record = None if record is None or name in getattr(record, "reasons", ()) else getattr(record, name)
+    return field, record
 
 
 def _unwrap(hint: Any) -> tuple[Any, tuple[Any, ...]]:

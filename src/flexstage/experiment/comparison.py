@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
@@ -17,10 +17,17 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Graded, Heading, Layout
 from flexstage.base.units.quantity import ANGLE, FREQUENCY, RATIO
 from flexstage.experiment.channels import Doubt, Residues, gain_doubts, normalise, output_scales, shape_doubt
-from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.identified import (
+    INFLATION,
+    DampingInterval,
+    DampingRatio,
+    FrequencyInterval,
+    Identified,
+    Widening,
+)
 from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
 from flexstage.experiment.updating.gains import is_length, metres
 from flexstage.mechanism.mechanism import Mechanism
@@ -33,6 +40,8 @@ _SILENT = 1e-6
 _PAIRED = 0.5
 _TRUSTED = 0.9
 _ROUNDS = 20
+_ASSURANCE = Heading("MAC", digits=4, mark=Graded(_TRUSTED, 0.0))
+_DIFFERENCE = Heading("theory difference", digits=4, unit="%", mark=Graded(0.02, 0.1))
 _TURNED = np.deg2rad(20.0)
 
 
@@ -44,14 +53,14 @@ class Measured:
     """
 
     index: Annotated[int, INNER]
-    frequency: Annotated[float, FREQUENCY]
-    frequency_interval: Annotated[tuple[float, float], FREQUENCY]
-    damping: float
-    damping_interval: tuple[float, float]
-    widening: float
+    frequency: Annotated[float, FREQUENCY, Heading("experiment", digits=7, absent="not found")]
+    frequency_interval: FrequencyInterval
+    damping: DampingRatio
+    damping_interval: DampingInterval
+    widening: Widening
 
     @property
-    def number(self) -> Annotated[int, VIEW]:
+    def number(self) -> Annotated[int, VIEW, Heading("mode of the record")]:
         """Its number in the record, from 1."""
         return self.index + 1
 
@@ -65,27 +74,38 @@ class ComparedMode:
     below 0.8 `fea` is absent.
     """
 
-    number: int
+    TABLE: ClassVar[Layout] = Layout(
+        "Theory, FEA and experiment",
+        "number name theory fea fea_error experiment.frequency experiment.frequency_interval experiment.widening difference fea_difference "
+        "uncertainty assurance fea_assurance experiment.damping",
+        notes=(
+            "Differences: relative to the experiment, which had damping; theory and FEA are undamped. +-: half of the 95 % interval.",
+            "MAC: modal assurance of theory and experiment at the sensors; of repeated modes, within their subspace.",
+            INFLATION,
+        ),
+    )
+
+    number: Annotated[int, Heading("mode")]
     name: str
     theory: Annotated[float, FREQUENCY]
-    fea: Annotated[float | None, FREQUENCY] = None
-    fea_error: float | None = None
-    fea_assurance: float | None = None
+    fea: Annotated[float | None, FREQUENCY, Heading("FEA")] = None
+    fea_error: Annotated[float | None, RATIO, Heading("FEA error", digits=2, unit="%")] = None
+    fea_assurance: Annotated[float | None, replace(_ASSURANCE, text="MAC of FEA")] = None
     experiment: Measured | None = None
-    assurance: float | None = None
+    assurance: Annotated[float | None, _ASSURANCE] = None
 
     @property
-    def difference(self) -> Annotated[float | None, RATIO]:
+    def difference(self) -> Annotated[float | None, RATIO, _DIFFERENCE]:
         """Theory over experiment less one."""
         return None if self.experiment is None else self.theory / self.experiment.frequency - 1.0
 
     @property
-    def fea_difference(self) -> Annotated[float | None, RATIO]:
+    def fea_difference(self) -> Annotated[float | None, RATIO, replace(_DIFFERENCE, text="FEA difference")]:
         """FEA over experiment less one."""
         return None if self.experiment is None or self.fea is None else self.fea / self.experiment.frequency - 1.0
 
     @property
-    def uncertainty(self) -> float | None:
+    def uncertainty(self) -> Annotated[float | None, INNER, RATIO, Heading("+-", digits=2, unit="%")]:
         """Half of the experiment's 95 % interval, relative."""
         if self.experiment is None:
             return None
@@ -100,19 +120,31 @@ class RepeatedModes:
     `angle` is absent where the experiment shows fewer of them than there are.
     """
 
-    numbers: tuple[int, ...]
-    seen: int
-    angle: Annotated[float | None, ANGLE]
+    TABLE: ClassVar[Layout] = Layout(
+        "Repeated modes",
+        "numbers seen angle",
+        notes=("Repeated modes define a subspace; those of theory and experiment are compared by the largest angle between them.",),
+    )
+
+    numbers: Annotated[tuple[int, ...], Heading("modes")]
+    seen: Annotated[int, Heading("found in the experiment")]
+    angle: Annotated[float | None, ANGLE, Heading("largest angle", digits=3)]
 
 
 @dataclass(frozen=True)
 class FurtherMode:
     """A measured mode that is none of the platform's, with the local mode of theory [Hz] it is paired with, where there is one."""
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Further measured modes",
+        "experiment.number experiment.frequency experiment.frequency_interval experiment.widening experiment.damping name theory assurance",
+        notes=("Modes of single units, of the ground or of the support; the sensors alone identify local modes less reliably.",),
+    )
+
     experiment: Measured
-    name: str | None = None
+    name: Annotated[str | None, Heading("nearest mode of theory")] = None
     theory: Annotated[float | None, FREQUENCY] = None
-    assurance: float | None = None
+    assurance: Annotated[float | None, _ASSURANCE] = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +166,14 @@ class Compared(InNotebook):
     data_warnings: tuple[str, ...]
     provenance: str
     misnamed: Annotated[tuple[str, ...], INNER] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The model of theory, and of FEA the order, for tables."""
+        if self.fea is None:
+            return (f"Theory: {self.model.value} model.",)
+        error = "error estimated from the order below" if self.fea.errors else "error not estimated: no coarser result"
+        return f"Theory: {self.model.value} model.", f"FEA: elements of order {self.fea.order}, {error}."
 
     @property
     def fea_order(self) -> Annotated[int | None, VIEW]:

@@ -56,6 +56,7 @@ _LADDERS: dict[str, tuple[tuple[str, float], ...]] = {
     "N/Hz^0.5": (("N/Hz^0.5", 1.0),),
     "m/Hz^0.5": (("nm/Hz^0.5", 1e9),),
     "rad/Hz^0.5": (("nrad/Hz^0.5", 1e9),),
+    "%": (("%", 1e2),),
 }
 _PREFERRED = {
     "m": "um",
@@ -126,7 +127,7 @@ def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
     (DisplayUnit(unit='um/V', factor=1000000.0), DisplayUnit(unit='', factor=1.0))
     """
     if quantity is None or quantity.shown == "1":
-        return DisplayUnit("", 1.0)
+        return DisplayUnit(unit, 100.0 if unit == "%" else 1.0)
     ladder = dict(_LADDERS.get(quantity.si, ()))
     return DisplayUnit(unit, ladder[unit]) if unit else field_unit(quantity)
 

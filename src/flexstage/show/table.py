@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
+from itertools import chain
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -12,9 +13,9 @@ import numpy as np
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import Field, Heading, UnitIn, UnitOf, by_name, field_at, result_fields, values_of
-from flexstage.base.storage.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
-from flexstage.base.units.quantity import Bound, Quantity
+from flexstage.base.record import Field, Heading, Mark, UnitIn, UnitOf, by_name, field_at, field_of, result_fields, values_of
+from flexstage.base.storage.sheet import NUMBERS, Sheet, is_cell, owner_names, parts, plain_cell, rows_of
+from flexstage.base.units.quantity import SHARE, Bound, Quantity
 from flexstage.show.display import (
     DIGITS,
     NO_VALUE,
@@ -26,20 +27,6 @@ from flexstage.show.display import (
     number,
     percent,
 )
-
-
-class Mark(Enum):
-    """What a cell means besides its text; a renderer shows it by colour, weight or a sign."""
-
-    PLAIN = "plain"
-    STRONG = "strong"
-    FAINT = "faint"
-    PASS = "pass"
-    FAIL = "fail"
-    WARN = "warn"
-    STATED = "stated"
-    DERIVED = "derived"
-    ASSUMED = "assumed"
 
 
 @dataclass(frozen=True)
@@ -148,9 +135,9 @@ def row_table(
 ) -> Table:
     """One row a record, or a name, and a column a field, headed by its name in words with its quantity's unit, or as its `Heading` says.
 
-    `source` is a mapping or sequence of records of one kind, or a record with arrays `Along` names or labelled matrices. `fields` are those
-    shown, in that order (absent: all that a cell can hold); `head` is the heading of the names. Values outside of a field's `Bound` are
-    marked. `order` and `merged` as in `Layout`.
+    `source` is a mapping or sequence of records of one kind, or a record. Arrays `Along` names are a row a name, as are labelled matrices.
+    `fields` are those shown, in that order (absent: all that a cell can hold); `head` stands over the names, `path, axis` over two. Values
+    outside of a field's `Bound` are marked. `order` and `merged` as in `Layout`.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -160,50 +147,63 @@ def row_table(
     if not fields:
         sheet = rows_of(source)
         told = {each: values for each, values in sheet.columns.items() if all(map(is_cell, values))}
-        return sheet_table(title, Sheet({head or each: values for each, values in sheet.names.items()}, told), notes, provenance)
-    name, names = _row_names(source, fields)
-    named = [_name_column(head or name, names)] if names else []
-    columns = [*named, *(each for path in fields for each in _columns_at(source, path, names))]
-    table = _columns_table(title, columns, notes, provenance)
+        return sheet_table(title, Sheet(_headed(sheet.names, head), told), notes, provenance)
+    records = tuple(source.values()) if isinstance(source, Mapping) else source if isinstance(source, Sequence) else (source,)
+    ends = [_row_names(each, fields) for each in records]
+    counts = [len(names) for _, names in ends]
+    along = list(chain.from_iterable(names for _, names in ends))
+    names = {name: _spread(values, counts) for name, values in owner_names(source).items()} | ({ends[0][0]: along} if ends[0][0] else {})
+    named = [_name_column(*each) for each in _headed(names, head).items()]
+    table = _columns_table(
+        title, [*named, *(each for path in fields for each in _columns_at(records, path, counts, along))], notes, provenance
+    )
     rows = [(replace(first, mark=Mark.STRONG), *others) for first, *others in table.rows]
     if order:
-        factors = np.nan_to_num(np.array(_values_at(source, order)[1], dtype=float), nan=-1.0, posinf=1e300)
+        factors = np.nan_to_num(np.array(_values_at(records, order, counts), dtype=float), nan=-1.0, posinf=1e300)
         rows = [rows[place] for place in np.argsort(np.round(factors, 6), kind="stable")]
     table = replace(table, rows=tuple(rows))
     return merge_rows(table) if merged else table
 
 
-def _row_names(source: Any, paths: Iterable[str]) -> tuple[str, tuple[Any, ...]]:
-    """What the rows of a table are, and the name of each; none of a sequence."""
-    if isinstance(source, Mapping):
-        return "name", tuple(source)
-    if isinstance(source, Sequence):
-        return "", ()
-    found = [field_at(source, path) for path in paths]
+def _headed(names: Mapping[str, Iterable[Any]], head: str) -> dict[str, Iterable[Any]]:
+    """Names under the heads stated, one each, else under their own."""
+    return dict(zip(head.split(", ") if head else names, names.values(), strict=True))
+
+
+def _row_names(record: Any, paths: Iterable[str]) -> tuple[str, Sequence[Any]]:
+    """What the rows of a record are, and the name of each; a single row without a name where nothing in it stands along names."""
+    found = [field_at(record, path) for path in paths]
     matrix = next((value for _, value in found if isinstance(value, Matrix)), None)
     if matrix is not None:
         return "along", matrix.rows
-    axis, names = field_at(source, next(field.axes[0] for field, _ in found if field.axes))
-    return axis.words.removesuffix("s"), names
+    axis = next((field.axes[0] for field, _ in found if field.axes), None)
+    return (field_of(type(record), axis).words.removesuffix("s"), getattr(record, axis)) if axis else ("", ("",))
 
 
-def _values_at(source: Any, path: str) -> tuple[Field, Any]:
-    """A field of a record with its values by name, or of records with the value of each."""
-    if isinstance(source, (Mapping, Sequence)):
-        found = [field_at(each, path) for each in (source.values() if isinstance(source, Mapping) else source)]
-        return found[0][0], [value for _, value in found]
-    field, value = field_at(source, path)
-    return field, value if isinstance(value, Matrix) else by_name(value)
+def _spread(values: Iterable[Any], counts: Iterable[int], *, along: bool = False) -> list[Any]:
+    """A value a row: of each record its entries along names, or what it has once, repeated."""
+    pairs = zip(values, counts, strict=True)
+    return [each for value, count in pairs for each in (by_name(value) if along and value is not None else (value,) * count)]
 
 
-def _columns_at(source: Any, path: str, names: Sequence[str]) -> Iterator[_ColumnCells]:
-    """The columns of a field: those of a matrix, one of other values, none without any."""
-    field, values = _values_at(source, path)
-    beside, of_name = field.annotation(UnitIn), field.annotation(UnitOf)
-    if isinstance(values, Matrix):
-        yield from matrix_columns(values, result_fields(type(source)), field.annotation(Heading) or _PLAIN)
-    elif values is not None:
-        units = _values_at(source, beside.field)[1] if beside else [of_name.unit(name) for name in names] if of_name else ()
+def _values_at(records: Iterable[Any], path: str, counts: Iterable[int]) -> list[Any]:
+    """The value of a field in each row."""
+    found = [field_at(each, path) for each in records]
+    return _spread((value for _, value in found), counts, along=bool(found[0][0].axes))
+
+
+def _columns_at(records: Sequence[Any], path: str, counts: Sequence[int], names: Sequence[str]) -> Iterator[_ColumnCells]:
+    """The columns of a field: those of a matrix, one of other values, none where it has no value in any row and no word for that."""
+    field, value = field_at(records[0], path)
+    if isinstance(value, Matrix):
+        yield from matrix_columns(value, result_fields(type(records[0])), field.annotation(Heading) or _PLAIN)
+        return
+    values, beside, of_name = _values_at(records, path, counts), field.annotation(UnitIn), field.annotation(UnitOf)
+    if beside:
+        units = _spread((getattr(each, beside.field) for each in records), counts, along=bool(field.axes))
+    else:
+        units = [of_name.unit(name) for name in names] if of_name else []
+    if field.heading.absent or any(each is not None for each in values):
         yield field_column(field, values, units)
 
 
@@ -250,6 +250,14 @@ def _columns_table(title: str, columns: Sequence[_ColumnCells], notes: Iterable[
     return make_table(title, [column for column, _ in columns], rows, notes=notes, provenance=provenance)
 
 
+def array_table(
+    title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = MappingProxyType({}), notes: Iterable[str] = ()
+) -> Table:
+    """Arrays of a record as columns, an entry a row; `names` of the rows by their head."""
+    columns = (field_column(field, list(values)) for field, values in (field_at(record, name) for name in fields))
+    return _columns_table(title, [*(_name_column(*each) for each in names.items()), *columns], notes)
+
+
 def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
     """A record as rows of name, value and unit; `fields` as for `row_table`."""
     told = values_of(record)[0].items()
@@ -257,7 +265,7 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
     return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
 
 
-def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = ()) -> Table | None:
+def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table | None:
     """The table of a result, or of results in a sequence or by name, as `TABLE` of its class says; `None` where there is none.
 
     `fields` and `title` replace those of `TABLE`.
@@ -271,15 +279,25 @@ def result_table(source: Any, fields: str = "", *, title: str = "", notes: Itera
     one = next(iter(several), None)
     if one is None:
         return None
-    layout, paths = one.TABLE, (fields or one.TABLE.fields).split()
-    own = layout.notes if one is not source else (*layout.notes, *getattr(one, "notes", ()))
-    title, *told = (text.format(self=one) for text in (title or layout.title, *own))
-    said, provenance = [*told, *notes], getattr(one, "provenance", "")
+    layout, paths, title = one.TABLE, (fields or one.TABLE.fields).split(), (title or one.TABLE.title).format(self=one)
+    said = [
+        *chain.from_iterable(_told(text, source, one) for text in layout.notes),
+        *(getattr(one, "notes", ()) if one is source else ()),
+        *notes,
+    ]
+    provenance = provenance or getattr(one, "provenance", "")
     known = [field_at(one, path) for path in paths] or values_of(one)[0].items()
     if one is source and not any(field.axes or isinstance(value, Matrix) for field, value in known):
         return record_table(title, one, *paths, notes=said, provenance=provenance)
     table = row_table(title, source, *paths, head=layout.head, order=layout.order, merged=layout.merged, notes=said, provenance=provenance)
     return table if table.rows else None
+
+
+def _told(text: str, source: Any, one: Any) -> list[str]:
+    """A note of a result, or of results by name, of each where they differ."""
+    notes = {name: text.format(self=each) for name, each in (source if isinstance(source, Mapping) else {"": one}).items()}
+    alike = list(dict.fromkeys(notes.values()))
+    return alike if len(alike) == 1 else [f"{name}: {note}" for name, note in notes.items()]
 
 
 def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
@@ -336,36 +354,58 @@ def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ())
     >>> [cell.text for cell in field_column(Field("after", float, ()), [2.1e11, 1.6e-3])[1]]
     ['2.1e11', '0.0016']
     """
+    column, cells = _plain_column(field, values, units)
+    heading = field.heading
+    missing = Cell(heading.absent, Mark.WARN) if heading.absent else Cell(NO_VALUE, Mark.FAINT)
+    cells = [missing if value is None else cell for cell, value in zip(cells, values, strict=True)]
+    mark = heading.mark
+    if mark is not None:
+        cells = [cell if value is None else replace(cell, mark=mark(value)) for cell, value in zip(cells, values, strict=True)]
+    return column, cells
+
+
+def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> _ColumnCells:
+    """The column of a field and its cells, not graded."""
     heading, quantity = field.heading, field.annotation(Quantity)
+    form = display_unit(quantity, heading.unit)
+    if field.type == tuple[float, float]:
+        ends = [NO_VALUE if each is None else interval_text(*(form.factor * end for end in each)) for each in values]
+        return Column(heading.text, form.unit), [Cell(text) for text in ends]
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
         return Column(heading.text, numeric=False), [Cell(_cell_text(each)) for each in values]
     numbers = np.array([np.nan if each is None else float(first_design(each, 0)) for each in values])
     units = units or ([field.unit] * len(numbers) if heading.varying else ())
     varying = heading.varying or len(set(units)) > 1
     largest = float(np.max(np.abs(numbers[np.isfinite(numbers)]), initial=0.0))
-    form = display_unit_of(units[0], largest, heading.unit) if units else display_unit(quantity, heading.unit)
+    form = display_unit_of(units[0], largest, heading.unit) if units else form
     if varying:
         cells = _cells_with_units(numbers, units, heading.digits)
     elif form.unit == "%":
-        cells = [Cell(percent(each, heading.digits or 4), bar=each) for each in _zero_noise(numbers, 1.0).tolist()]
+        shares = _zero_noise(numbers, 1.0).tolist()
+        cells = [Cell(percent(each, heading.digits or 4), bar=each if quantity == SHARE else None) for each in shares]
     elif quantity is None and not units:  # numbers of who knows what beside one another: none is noise against the others
         cells = [Cell(text, _mark_of(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
     else:
         cells = number_cells(numbers, form, heading.digits)
     cells = [Cell(NO_VALUE, Mark.FAINT) if np.isnan(each) else cell for cell, each in zip(cells, numbers, strict=True)]
     bound = field.annotation(Bound) or Bound()
-    marks = [_mark_within(each, bound, heading.safe) for each in numbers]
-    cells = [replace(cell, mark=mark or cell.mark) for cell, mark in zip(cells, marks, strict=True)]
+    outside = [each > bound.high + NOISE * abs(bound.high) or each < bound.low - NOISE * abs(bound.low) for each in numbers]
+    cells = [replace(cell, mark=Mark.FAIL) if out else cell for cell, out in zip(cells, outside, strict=True)]
     cells = [replace(cell, text=heading.infinite) if np.isposinf(each) else cell for cell, each in zip(cells, numbers, strict=True)]
     return Column(heading.text, "" if varying or form.unit in ("%", "1") else form.unit), cells
 
 
-def _mark_within(value: float, bound: Bound, safe: float) -> Mark | None:
-    """The mark of a value outside of its bound, where it is unknown below it too, and of one that is near."""
-    low = np.isfinite(bound.low) and not value >= bound.low - NOISE * abs(bound.low)
-    if low or value > bound.high + NOISE * abs(bound.high):
-        return Mark.FAIL
-    return Mark.WARN if value < safe else None
+def interval_text(low: float, high: float) -> str:
+    """An interval, its ends to two significant digits of its width.
+
+    >>> interval_text(118.0101, 118.0145), interval_text(1.0, float("inf"))
+    ('118.0101 to 118.0145', '-')
+    """
+    width = high - low
+    if not np.isfinite(width):
+        return NO_VALUE
+    decimals = int(np.clip(1 - np.floor(np.log10(width)), 0, 6)) if width > 0.0 else 4
+    return f"{low:.{decimals}f} to {high:.{decimals}f}"
 
 
 def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, heading: Heading = _PLAIN) -> Iterator[_ColumnCells]:
@@ -391,6 +431,8 @@ def _cells_with_units(values: Array, units: Sequence[str], digits: int | None = 
 def _cell_text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
+    if isinstance(value, tuple):
+        return ", ".join(map(_cell_text, value)) or NO_VALUE
     return NO_VALUE if value is None else str(plain_cell(value))
 
 

@@ -15,13 +15,13 @@ from typing import Annotated, ClassVar, TypeAlias, TypeVar, cast
 import numpy as np
 import scipy
 
-from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.load import SAFETY, dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, first_design, stack
 from flexstage.base.record import Heading, Layout
 from flexstage.base.sparse import Rows, Sparse, below, few
-from flexstage.base.units.quantity import LENGTH, RATIO, Bound
+from flexstage.base.units.quantity import LENGTH, RATIO
 from flexstage.beams.compliance import locked_freedoms as locked_by
 from flexstage.beams.geometric import ENDS, Geometric, geometric
 from flexstage.beams.mass import mass
@@ -65,8 +65,8 @@ class Stability:
         notes=("Load factor at which the stage buckles as a whole: linearised, every column with its real ends.",),
     )
 
-    dead: Annotated[Array, RATIO, Bound(low=1.0), Heading("dead load", digits=4, infinite="none", safe=1.5)]
-    worst: Annotated[Array, RATIO, Bound(low=1.0), Heading("dead load with the worst strokes", digits=4, infinite="none", safe=1.5)]
+    dead: Annotated[Array, RATIO, Heading("dead load", digits=4, infinite="none", mark=SAFETY)]
+    worst: Annotated[Array, RATIO, Heading("dead load with the worst strokes", digits=4, infinite="none", mark=SAFETY)]
     strokes: Annotated[Array, LENGTH]
     stiffens: Annotated[Array, RATIO]
     moving: tuple[str, ...]

@@ -9,13 +9,14 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from flexstage.analysis.loaded.stability import Stability, stability
+from flexstage.analysis.workspace.load import SAFETY
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, index_of_largest
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
-from flexstage.base.units.quantity import RATIO, Bound
+from flexstage.base.units.quantity import RATIO
 from flexstage.beams.compliance import law_of
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
@@ -63,7 +64,7 @@ class Buckling(InNotebook):
     stage: Stability
 
     @property
-    def factor(self) -> Annotated[Array, INNER, Bound(low=1.0), Heading("load factor", digits=4, infinite="in tension", safe=1.5)]:
+    def factor(self) -> Annotated[Array, INNER, Heading("load factor", digits=4, infinite="in tension", mark=SAFETY)]:
         """By how much the compression could grow (..., L); infinite for parts in tension."""
         pressed = self.compression > 0.0
         return np.where(pressed, self.critical / np.where(pressed, self.compression, 1.0), np.inf)

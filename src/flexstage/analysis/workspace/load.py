@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, Vector, stack
-from flexstage.base.record import Along, Heading, Layout
+from flexstage.base.record import Along, Graded, Heading, Layout, Mark
 from flexstage.base.units.quantity import FORCE, SHARE, Bound
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
@@ -25,6 +25,8 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 
 OWN_WEIGHT = "own weight"
 _ROUNDING = 1e-9
+SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
+"""Grade of factors against failure: below 1 it happens, below 1.5 little is left."""
 
 
 @dataclass(frozen=True, eq=False)

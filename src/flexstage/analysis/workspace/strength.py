@@ -8,14 +8,15 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 
 import numpy as np
 
+from flexstage.analysis.workspace.load import SAFETY
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
-from flexstage.base.record import INNER, VIEW, Heading, Layout
-from flexstage.base.units.quantity import RATIO, Bound
+from flexstage.base.record import VIEW, Heading, Layout
+from flexstage.base.units.quantity import RATIO
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -60,7 +61,7 @@ class HingeStress(InNotebook):
         return self.yield_stress if self.limit is None else self.limit
 
     @property
-    def safety(self) -> Annotated[Array, INNER, Bound(low=1.0), Heading("safety factor", digits=4, safe=1.5)]:
+    def safety(self) -> Annotated[Array, INNER, Heading("safety factor", digits=4, mark=SAFETY)]:
         """The limit over peak stress (..., L); infinite where nothing is stressed."""
         loaded = self.peak != 0.0
         return np.where(loaded | np.isnan(self.allowed), self.allowed / np.where(loaded, self.peak, 1.0), np.inf)

@@ -65,10 +65,20 @@ def parts(result: Any) -> Iterator[_Part]:
 def rows_of(source: Any) -> Sheet:
     """A mapping or sequence of records as rows, or the arrays of a record that stand along the first of its fields of names."""
     if isinstance(source, Mapping):
-        return Sheet({"name": tuple(source)}, _columns([_record(each) for each in source.values()]))
+        return Sheet(owner_names(source), _columns([_record(each) for each in source.values()]))
     if isinstance(source, Sequence):
         return Sheet({}, _columns([_record(each) for each in source]))
     return next(_rows_along({}, [_record(source)]))[1]
+
+
+def owner_names(source: Any) -> dict[str, tuple[Any, ...]]:
+    """Names of the rows of a mapping, none of anything else; a key of several names is a column each.
+
+    >>> owner_names({("raster", "B1"): 0, ("raster", "B2"): 0})
+    {'name': ('raster', 'raster'), 'name 2': ('B1', 'B2')}
+    """
+    keys = [key if isinstance(key, tuple) else (key,) for key in source] if isinstance(source, Mapping) else []
+    return {f"name {place}" if place > 1 else "name": names for place, names in enumerate(zip(*keys, strict=True), 1)}
 
 
 def _record(value: Any) -> Record:

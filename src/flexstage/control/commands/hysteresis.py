@@ -11,7 +11,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.units.quantity import VOLTAGE
 from flexstage.base.units.unit import parse
 from flexstage.control.hysteresis.show.report import hysteresis_report
-from flexstage.control.hysteresis.show.tables import plays_table, stack_table
+from flexstage.control.hysteresis.show.tables import stack_tables
 from flexstage.control.hysteresis.stack import dumps_hysteresis
 from flexstage.control.hysteresis.stack_test import Channels, stack_test
 from flexstage.experiment.record_options import Arrays, Rate, RecordTexts, Units, open_records
@@ -58,9 +58,18 @@ def hysteresis(  # noqa: PLR0913 (its options)
         save(output, dumps_hysteresis(found.stack), "--output")
     if report is not None:
         save(report, hysteresis_report(found), "--report")
-    tables = [stack_table(found), plays_table(found)]
     warnings = found.hysteresis.warnings
-    answer("hysteresis", None, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, warnings=warnings, beside=(report, output))
+    answer(
+        "hysteresis",
+        None,
+        lambda: found,
+        lambda: stack_tables(found),
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        warnings=warnings,
+        beside=(report, output),
+    )
 
 
 def _open(path: Path, reader: RecordTexts) -> Record:

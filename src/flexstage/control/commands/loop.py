@@ -31,7 +31,6 @@ from flexstage.control.loop_options import (
     override,
     trajectory_setup,
 )
-from flexstage.control.show import error_tables as errors
 from flexstage.control.show import tables
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
@@ -297,7 +296,7 @@ def _compare(asking: _Asking, outputs: _Written) -> None:
         "loops",
         mechanism,
         lambda: rivals,
-        lambda: [*stands.tables(), tables.comparison_table(rivals), tables.rivals_table(rivals)],
+        lambda: [*stands.tables(), *tables.comparison_tables(rivals)],
         model=asking.model,
         json=outputs.json,
         csv=outputs.csv,
@@ -365,21 +364,13 @@ def _write_example(design: Path, example: Path) -> None:
     announce(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
 
 
-def _tables(found: LoopStudy) -> Iterator[Table | str | None]:
-    yield tables.loop_table(found)
-    yield None if found.second_order is None else found.second_order.text
-    yield tables.charge_table(found)
-    yield tables.damping_table(found)
-    yield tables.law_table(found)
-    yield tables.margin_table(found)
-    yield tables.measured_table(found)
-    yield tables.step_table(found.runs)
-    yield tables.tracking_table(found.runs)
-    yield tables.learning_table(found.runs)
-    yield tables.repetition_table(found.runs)
-    yield tables.heat_table(found.runs)
-    yield tables.leg_table(found.runs)
-    yield None if found.static_errors is None else errors.rest_table(found.static_errors)
-    yield errors.noise_table(found)
-    if found.hysteresis is not None:
-        yield errors.hysteresis_table(found.hysteresis)
+def _tables(found: LoopStudy) -> list[Table | str | None]:
+    small = None if found.second_order is None else found.second_order.text
+    return [
+        *tables.loop_tables(found),
+        small,
+        *tables.margin_tables(found),
+        *tables.measured_tables(found),
+        *tables.time_tables(found.runs),
+        *tables.error_tables(found),
+    ]

@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.base.record import Heading
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.sampling import bilinear
@@ -32,9 +33,9 @@ class Prefilter(CheckedFields):
     [1.0, 0.5]
     """
 
-    frequency: Annotated[float, FREQUENCY]
-    damping: float = 1.0
-    lead: Annotated[float | None, FREQUENCY] = None
+    frequency: Annotated[float, FREQUENCY, Heading("prefilter", digits=4)]
+    damping: Annotated[float, Heading("prefilter damping", digits=3)] = 1.0
+    lead: Annotated[float | None, FREQUENCY, Heading("prefilter lead", digits=4)] = None
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, Along, Heading
+from flexstage.base.record import INNER, Along, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY, SHARE
 from flexstage.control.damping.damped_plant import tension_signs
 from flexstage.control.damping.legs import Leg, pair_modes
@@ -28,13 +28,24 @@ class ChargedStacks:
     plant's modes are at `by_volts` (k,) [Hz] with volts held, and at `by_charge` (k,) [Hz] with charge.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Charge drive",
+        "stiffer corners residual_hysteresis",
+        notes=("Stiffness at constant charge over that at constant voltage: 1/(1 - k^2), above the corner frequency.",),
+    )
+
     actuators: tuple[str, ...]
-    stiffer: Annotated[Array, Along("actuators"), Heading("stiffer", digits=5)]
-    corners: Annotated[Array, FREQUENCY, Along("actuators"), Heading("corner", digits=4)]
+    stiffer: Annotated[Array, Along("actuators"), Heading("stiffness ratio", digits=4)]
+    corners: Annotated[Array, FREQUENCY, Along("actuators"), Heading("corner frequency", digits=4)]
     residual_hysteresis: Annotated[Array, SHARE, Along("actuators"), Heading("residual hysteresis", digits=3)]
-    by_volts: Annotated[Array, FREQUENCY]
-    by_charge: Annotated[Array, FREQUENCY]
+    by_volts: Annotated[Array, FREQUENCY, Heading("mode, voltage drive", digits=4)]
+    by_charge: Annotated[Array, FREQUENCY, Heading("mode, charge drive", digits=4)]
     drives: Annotated[Mapping[str, ChargeDrive], INNER]
+
+    @property
+    def rise(self) -> Annotated[Array, INNER, Heading("change", digits=3, unit="%")]:
+        """Relative change (k,) of the modes' frequencies."""
+        return self.by_charge / self.by_volts - 1.0
 
 
 def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mapping[str, ChargeDrive]) -> LinearModel:

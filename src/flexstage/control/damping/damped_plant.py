@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Table
-from flexstage.base.record import INNER, VIEW, Along
+from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.damping.force_feedback import ForceFeedback, damping_of_pair, most_damping
 from flexstage.control.damping.legs import Leg, Pairs
@@ -32,13 +32,24 @@ class DampedMode:
     (w - z)/(2 z), and `alone` what they give it with this gain if no other mode were near.
     """
 
-    frequency: Annotated[float, FREQUENCY]
-    ratio: float
-    zero: Annotated[float, FREQUENCY]
-    damped_frequency: Annotated[float, FREQUENCY]
-    damped_ratio: float
-    alone: float
-    most: float
+    TABLE: ClassVar[Layout] = Layout(
+        "Integral force feedback (IFF) in the legs",
+        "frequency zero ratio most alone damped_frequency damped_ratio",
+        notes=(
+            (
+                "Transmission zero z: the frequency without the stacks' axial stiffness. Maximum damping: (w - z)/(2 z), of one leg or "
+                "decoupled legs. Isolated mode: with this gain, no other mode near, no damping of its own and no lag of the amplifier."
+            ),
+        ),
+    )
+
+    frequency: Annotated[float, FREQUENCY, Heading("mode", digits=4)]
+    ratio: Annotated[float, Heading("damping ratio", unit="%")]
+    zero: Annotated[float, FREQUENCY, Heading("transmission zero", digits=4)]
+    damped_frequency: Annotated[float, FREQUENCY, Heading("mode with IFF", digits=4)]
+    damped_ratio: Annotated[float, Heading("damping ratio with IFF", unit="%")]
+    alone: Annotated[float, Heading("damping, isolated mode", unit="%")]
+    most: Annotated[float, Heading("maximum damping", unit="%")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +62,12 @@ class ActiveDamping:
     damping ratio of the modes that the loop feels most, as many as it has coordinates.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Remaining stiffness with IFF",
+        "left_at_rest softest softest_at",
+        notes=("Share of the platform's static stiffness at rest, and the lowest below the first mode.",),
+    )
+
     legs: tuple[str, ...]
     gain: Annotated[float, RATE]
     corner: Annotated[float, FREQUENCY]
@@ -58,9 +75,9 @@ class ActiveDamping:
     kept_below: Annotated[float, FREQUENCY]
     modes: tuple[DampedMode, ...]
     coordinates: tuple[str, ...]
-    left_at_rest: Annotated[Array, Along("coordinates")]
-    softest: Annotated[Array, Along("coordinates")]
-    softest_at: Annotated[Array, FREQUENCY, Along("coordinates")]
+    left_at_rest: Annotated[Array, Along("coordinates"), Heading("at rest", unit="%")]
+    softest: Annotated[Array, Along("coordinates"), Heading("lowest", unit="%")]
+    softest_at: Annotated[Array, FREQUENCY, Along("coordinates"), Heading("at frequency", digits=4)]
     law: Annotated[ForceFeedback, INNER]
     sensed: Annotated[tuple[Leg, ...], INNER]
     reached: float

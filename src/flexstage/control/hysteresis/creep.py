@@ -12,6 +12,7 @@ import scipy
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
+from flexstage.base.record import Heading
 from flexstage.base.units.quantity import TIME
 from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
@@ -24,7 +25,7 @@ class LogCreep(CheckedFields):
     (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) Valid from about t_0 on; it has no limit for short or long times.
     """
 
-    rate: float
+    rate: Annotated[float, Heading("creep per decade", digits=3, unit="%")]
     reference: Annotated[float, TIME] = 0.1
 
     def __post_init__(self) -> None:

@@ -5,13 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+import numpy as np
+
 from flexstage.base.finding import Finding
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Graded, Heading
 from flexstage.base.units.quantity import LENGTH, PIEZO_GAIN, VOLTAGE
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.models.shape import Range
+
+SMALL_ERROR = Graded(0.02)
 
 
 @dataclass(frozen=True)
@@ -31,10 +35,15 @@ class Trial:
 class Plays:
     """Thresholds and weights (n,) of a stack's plays; the envelopes `before` (V to V) and `after` (m to m) them, knots and values."""
 
-    thresholds: Annotated[Array, VOLTAGE]
-    weights: Annotated[Array, PIEZO_GAIN]
+    thresholds: Annotated[Array, VOLTAGE, Heading("threshold")]
+    weights: Annotated[Array, PIEZO_GAIN, Heading("weight", digits=4)]
     before: Annotated[tuple[Array, Array], VIEW]
     after: Annotated[tuple[Array, Array], VIEW]
+
+    @property
+    def slopes(self) -> Annotated[Array, INNER, PIEZO_GAIN, Heading("sum of weights", digits=4)]:
+        """Slopes (n,) [m/V] of the stroke from rest beyond each threshold."""
+        return np.cumsum(self.weights)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,15 +58,15 @@ class IdentifiedHysteresis(InNotebook):
     """
 
     model: Annotated[PrandtlIshlinskii, INNER]
-    range: Annotated[Range, VOLTAGE]
-    stroke: Annotated[float, LENGTH]
-    rms: float
-    largest: float
-    validation: float
-    width: float
-    drift: float
+    range: Annotated[Range, VOLTAGE, Heading("voltage range")]
+    stroke: Annotated[float, LENGTH, Heading(varying=True)]
+    rms: Annotated[float, Heading("rms error", digits=3, unit="%", mark=SMALL_ERROR)]
+    largest: Annotated[float, Heading("largest error", digits=3, unit="%", mark=Graded(0.1))]
+    validation: Annotated[float, Heading("rms error, validation", digits=3, unit="%", mark=SMALL_ERROR)]
+    width: Annotated[float, Heading("loop width", digits=3, unit="%")]
+    drift: Annotated[float, Heading(digits=3, unit="%")]
     branches: int
-    inner: int
+    inner: Annotated[int, Heading("inner branches")]
     known_from: int
     trials: tuple[Trial, ...]
     warnings: Annotated[tuple[Finding, ...], INNER]

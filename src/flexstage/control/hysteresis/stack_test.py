@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -13,12 +13,12 @@ from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import VIEW
+from flexstage.base.record import VIEW, Heading, Layout
 from flexstage.control.hysteresis.creep_record import IdentifiedCreep, identify_creep
 from flexstage.control.hysteresis.identify import identify_hysteresis
 from flexstage.control.hysteresis.models.inverse import inverse
 from flexstage.control.hysteresis.models.shape import Range
-from flexstage.control.hysteresis.result import IdentifiedHysteresis
+from flexstage.control.hysteresis.result import SMALL_ERROR, IdentifiedHysteresis
 from flexstage.control.hysteresis.stack import StackHysteresis, stack_hysteresis
 from flexstage.experiment.records.record import Channel, Record
 from flexstage.experiment.records.unit import in_si, same_dimension, unit_problem
@@ -39,6 +39,16 @@ class StackTest(InNotebook):
     `inverse_volts` (k,) are the volts [V] by which the inverse makes the recorded strokes: those applied, if the model were exact.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Hysteresis of the stack",
+        "hysteresis.range hysteresis.stroke hysteresis.width hysteresis.branches hysteresis.inner hysteresis.rms hysteresis.largest "
+        "hysteresis.validation inverse_rms hysteresis.drift creep.law.rate",
+        notes=(
+            "Width, errors and drift: shares of the stroke; of the inverse: of the voltage range.",
+            "Loop width: largest distance of the branches. Validation: on parts of the record that were not fitted.",
+        ),
+    )
+
     hysteresis: IdentifiedHysteresis
     inverse_volts: Array
     channels: Channels
@@ -58,7 +68,16 @@ class StackTest(InNotebook):
         return np.arange(self.hysteresis.known_from, len(self.inverse_volts))
 
     @property
-    def inverse_rms(self) -> Annotated[float, VIEW]:
+    def notes(self) -> tuple[str, ...]:
+        """The size of the model, and the times that creep is fitted to."""
+        found = self.hysteresis
+        plays, knots = found.model.thresholds.shape[1], found.model.before.knots.shape[1]
+        size = f"{plays} plays, an envelope of {knots} knots, chosen among {len(found.trials)} sizes of model."
+        creep = () if self.creep is None else ("Creep: {:.3g} to {:.3g} s after the step.".format(*self.creep.span),)
+        return (size, *creep)
+
+    @property
+    def inverse_rms(self) -> Annotated[float, VIEW, Heading("rms error, inverse", digits=3, unit="%", mark=SMALL_ERROR)]:
         """Rms difference of the volts from the inverse to those applied, as a part of the range."""
         wrong, (low, high) = (self.inverse_volts - self.hysteresis.volts)[self.valid_samples], self.hysteresis.range
         return float(np.sqrt(np.mean(wrong**2))) / (high - low)

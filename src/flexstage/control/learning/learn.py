@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW, Along, Axes
+from flexstage.base.record import INNER, VIEW, Along, Axes, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.learning.responses import Band, frequencies_of, inverse, motions, readings, through
 from flexstage.control.systems.closed import Loop
@@ -23,6 +23,10 @@ _MOST_INVERTED = 100.0
 _OFFSETS, _LINES, _AROUND = 5, 600, 15
 _REPEATS = 4
 """Runs of what was learned, by which what repeats and what does not are told apart."""
+
+
+IN_BAND = "Rms errors measured by the gauges, within the band but for the last column: errors beyond the band are not learned."
+BEYOND = Heading("beyond the band", digits=3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +47,19 @@ class Learned:
     by up to `spread` off, `gain` that of learning.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Iterative learning control",
+        "before learned noise beyond",
+        head="path, coordinate",
+        notes=(
+            (
+                "{self.rms.shape[0]} passes, the first without learning; gain {self.gain:g}, band up to {self.band:.4g} Hz. A pass leaves "
+                "at most {self.contraction:.3g} of the repetitive error, mode frequencies within {self.spread:g} of themselves."
+            ),
+            IN_BAND,
+        ),
+    )
+
     coordinates: tuple[str, ...]
     units: tuple[str, ...]
     band: Annotated[float, FREQUENCY]
@@ -50,9 +67,19 @@ class Learned:
     gain: float
     spread: float
     rms: Annotated[Array, Axes("passes", "coordinates")]
-    noise: Annotated[Array, Along("coordinates")]
-    beyond: Annotated[Array, Along("coordinates")]
+    noise: Annotated[Array, Along("coordinates"), UnitIn("units"), Heading("not repetitive", digits=3)]
+    beyond: Annotated[Array, Along("coordinates"), UnitIn("units"), BEYOND]
     commanded: Annotated[Array, INNER]
+
+    @property
+    def before(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("without learning", digits=3)]:
+        """The first error in the band (f,)."""
+        return self.rms[0]
+
+    @property
+    def learned(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last pass", digits=3)]:
+        """The last error in the band (f,)."""
+        return self.rms[-1]
 
     @property
     def above_noise(self) -> Annotated[Array, VIEW, Along("coordinates")]:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, Along, Axes
+from flexstage.base.record import INNER, Along, Axes, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import FREQUENCY, TIME
-from flexstage.control.learning.learn import fade_ends, filter_path, line_grid, robust_band, wanted_readings
+from flexstage.control.learning.learn import BEYOND, IN_BAND, fade_ends, filter_path, line_grid, robust_band, wanted_readings
 from flexstage.control.learning.responses import Band, frequencies_of, readings
 from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.system import System
@@ -130,6 +130,20 @@ class Repeated:
     period leaves, all modes by up to `spread` off; `amplifies` by how much it makes worse at most what does not repeat, between harmonics.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Repetitive control",
+        "first halfway last beyond",
+        head="path, coordinate",
+        notes=(
+            (
+                "{self.rms.shape[0]} periods of {self.period:.4g} s, gain {self.gain:g}, band up to {self.band:.4g} Hz. A period leaves "
+                "at most {self.contraction:.3g} of the repetitive error, mode frequencies within {self.spread:g} of themselves."
+            ),
+            "Errors between the harmonics of {self.period:.4g} s are amplified by at most {self.amplifies:.3g}.",
+            IN_BAND,
+        ),
+    )
+
     coordinates: tuple[str, ...]
     units: tuple[str, ...]
     period: Annotated[float, TIME]
@@ -139,8 +153,23 @@ class Repeated:
     gain: float
     spread: float
     rms: Annotated[Array, Axes("periods", "coordinates")]
-    beyond: Annotated[Array, Along("coordinates")]
+    beyond: Annotated[Array, Along("coordinates"), UnitIn("units"), BEYOND]
     commanded: Annotated[Array, INNER]
+
+    @property
+    def first(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("first period", digits=3)]:
+        """The error of the first period (f,)."""
+        return self.rms[0]
+
+    @property
+    def halfway(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("middle period", digits=3)]:
+        """The error halfway (f,)."""
+        return self.rms[len(self.rms) // 2]
+
+    @property
+    def last(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last period", digits=3)]:
+        """The error of the last period (f,)."""
+        return self.rms[-1]
 
 
 @dataclass(frozen=True, eq=False)

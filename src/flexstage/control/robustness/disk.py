@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import scipy
 
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.units.quantity import FREQUENCY
+from flexstage.base.record import INNER, Heading, Layout
+from flexstage.base.units.quantity import ANGLE, FREQUENCY
 from flexstage.control.robustness.singular import balance, lower_bound, upper_bound
 from flexstage.control.robustness.stability import require_stable
 from flexstage.control.systems.closed import Loop, LoopBreak, open_at, open_everywhere
@@ -43,26 +44,28 @@ class DiskMargin(InNotebook):
     `gain_high` and `phase` [rad] are what every loop may change by, independently of the others: a guarantee.
     """
 
+    TABLE: ClassVar[Layout] = Layout("Disk margin, all loops at once", "guaranteed gain_low gain_high phase")
+
     loops: tuple[str, ...]
     skew: float
-    guaranteed: float
+    guaranteed: Annotated[float, Heading("disk margin", digits=3)]
     reached: float
     frequency: Annotated[float, FREQUENCY]
     covered: bool
 
     @property
-    def gain_low(self) -> float:
+    def gain_low(self) -> Annotated[float, INNER, Heading("gain reduction margin", digits=3)]:
         """Least factor on every loop's gain."""
         return (2.0 - self.guaranteed * (1.0 - self.skew)) / (2.0 + self.guaranteed * (1.0 + self.skew))
 
     @property
-    def gain_high(self) -> float:
+    def gain_high(self) -> Annotated[float, INNER, Heading("gain margin", digits=3)]:
         """Largest factor on every loop's gain."""
         below = 2.0 - self.guaranteed * (1.0 + self.skew)
         return (2.0 + self.guaranteed * (1.0 - self.skew)) / below if below > 0.0 else np.inf
 
     @property
-    def phase(self) -> float:
+    def phase(self) -> Annotated[float, ANGLE, INNER, Heading("phase margin", digits=3)]:
         """Turn [rad] of every loop, either way: cos phi = (1 + g_low g_high)/(g_low + g_high)."""
         low, high = self.gain_low, self.gain_high
         cosine = low if np.isinf(high) else (1.0 + low * high) / (low + high)

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Heading
 from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.quantity import ANGLE, FREQUENCY
 from flexstage.control.controllers.pose_plant import pose_plant
@@ -39,11 +39,11 @@ class Reading:
     `fitted` is that of the plant that was tuned, `predicted` that of the stage's model, both at the same lines (NaN: there is no edge).
     """
 
-    value: float
-    low: float | None
-    high: float | None
-    fitted: float
-    predicted: float
+    value: Annotated[float, Heading("measured", digits=4)]
+    low: Annotated[float | None, Heading("95 %, low", digits=4)]
+    high: Annotated[float | None, Heading("95 %, high", digits=4)]
+    fitted: Annotated[float, Heading("identified model", digits=4)]
+    predicted: Annotated[float, Heading("design model", digits=4)]
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import scipy
@@ -13,8 +13,8 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW, Along
-from flexstage.base.units.quantity import ANGLE, FREQUENCY, TIME
+from flexstage.base.record import INNER, VIEW, Along, Heading, Layout, Mark
+from flexstage.base.units.quantity import ANGLE, FREQUENCY, SHORT_TIME
 from flexstage.control.robustness.disk import Edge, disk_margin
 from flexstage.control.robustness.stability import require_stable
 from flexstage.control.systems.closed import Loop, LoopBreak, loop, open_at
@@ -26,6 +26,11 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _AT_REST = 1e-8
 _FEW = 250
+_USUAL_DISK = 0.5
+
+
+def _grade_disk(alpha: float) -> Mark:
+    return Mark.PLAIN if alpha > _USUAL_DISK else Mark.WARN
 
 
 @dataclass(frozen=True)
@@ -37,12 +42,24 @@ class ChannelMargins:
     margin: the factors (1 + d/2)/(1 - d/2) with |d| < alpha, gains and phases *together*.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Stability margins",
+        "gain_low.value gain_high.value phase.value delay.value disk.value",
+        head="coordinate",
+        notes=(
+            (
+                "Of one loop at a time, opened at the pose, the others closed. Disk margin alpha: gain and phase together may change by "
+                "(1 + d/2)/(1 - d/2), |d| < alpha; at most 2."
+            ),
+        ),
+    )
+
     channel: Annotated[str, INNER]
-    gain_low: Edge
-    gain_high: Edge
-    phase: Annotated[Edge, ANGLE]
-    delay: Annotated[Edge, TIME]
-    disk: Edge
+    gain_low: Annotated[Edge, Heading("gain reduction margin", digits=3)]
+    gain_high: Annotated[Edge, Heading("gain margin", digits=3)]
+    phase: Annotated[Edge, ANGLE, Heading("phase margin", digits=4)]
+    delay: Annotated[Edge, SHORT_TIME, Heading("delay margin", digits=4)]
+    disk: Annotated[Edge, Heading("disk margin", digits=3, mark=_grade_disk)]
 
 
 @dataclass(frozen=True)
@@ -157,10 +174,21 @@ class Bandwidths(InNotebook):
     1, above which the loop makes disturbances worse; `half_rejection`: |S_ii| rises through -3 dB.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Bandwidth",
+        "tracking rejection",
+        notes=(
+            (
+                "Closed-loop bandwidth: the true motion is 3 dB below its reference. Sensitivity crossover: abs(S) = 1; above it, the loop "
+                "amplifies disturbances."
+            ),
+        ),
+    )
+
     coordinates: tuple[str, ...]
-    tracking: Annotated[Array, FREQUENCY, Along("coordinates")]
+    tracking: Annotated[Array, FREQUENCY, Along("coordinates"), Heading("closed-loop bandwidth (-3 dB)", digits=4)]
     complementary: Annotated[Array, FREQUENCY, Along("coordinates")]
-    rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
+    rejection: Annotated[Array, FREQUENCY, Along("coordinates"), Heading("sensitivity crossover", digits=4)]
     half_rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
 
 

@@ -10,7 +10,7 @@ from flexstage.base.version import __version__
 from flexstage.control.show.figures.front import FrontLine, front_figure
 from flexstage.control.show.playing import response_motions
 from flexstage.control.show.sections import error_section, frequency_section, headline, loop_section, measured_section, time_section
-from flexstage.control.show.tables import comparison_table, kind_name, rivals_table
+from flexstage.control.show.tables import comparison_tables, kind_name
 from flexstage.control.study.compare import Comparison
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.study import LoopStudy
@@ -65,11 +65,12 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
         "linear loop; of noise the geometric mean, rotations times the stage's length. Full dots: no other is better at once in all four."
     )
     drawn = Picture(to_svg(front_figure(lines), "front", "What controllers trade: rejection, noise, settling, delay margin"), caption)
+    compared, by_coordinate = comparison_tables(found)
     sections = (
         stage_section(scene(mechanism), motion=first_motion(data)),
-        section("Controllers side by side", [comparison_table(found), drawn if lines else None]),
+        section("Comparison of controllers", [compared, drawn if lines else None]),
         caveat_section(mechanism, found.warnings),
-        section("Motion by motion", [rivals_table(found)]),
+        section("By coordinate", [by_coordinate]),
     )
     head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))
     return page(head, [each for each in sections if each is not None], {"stage": data})

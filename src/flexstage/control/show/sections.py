@@ -7,28 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
-from flexstage.control.show.error_tables import hysteresis_table, noise_table, rest_table
 from flexstage.control.show.figures.diagram import Block as Box
 from flexstage.control.show.figures.diagram import Diagram, loop_diagram
 from flexstage.control.show.figures.frequency import Curves, Measured, measured_figure, open_loop_figure, pole_figure, sensitivity_figure
 from flexstage.control.show.figures.hysteresis import HysteresisLoop, hysteresis_figure
 from flexstage.control.show.figures.noise import Densities, Shares, noise_share_figure, noise_spectrum_figure
 from flexstage.control.show.figures.time import error_figure, lesson_figure, path_figure, step_figure
-from flexstage.control.show.tables import (
-    charge_table,
-    count_modes,
-    damping_table,
-    heat_table,
-    law_table,
-    learning_table,
-    leg_table,
-    loop_table,
-    margin_table,
-    measured_table,
-    repetition_table,
-    step_table,
-    tracking_table,
-)
+from flexstage.control.show.tables import count_modes, error_tables, loop_tables, margin_tables, measured_tables, time_tables
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import Run
 from flexstage.control.study.stacks import Sweep
@@ -47,9 +32,7 @@ def loop_section(found: LoopStudy) -> Section | None:
     """The loop at a glance: facts, block diagram, what it is made of."""
     drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
     caption = "Block diagram of the loop. Shaded: what the computer does, sample by sample."
-    blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found)]
-    blocks += [charge_table(found), damping_table(found), law_table(found)]
-    return section("The loop", blocks)
+    return section("The loop", [Facts(tuple(_facts(found))), Picture(drawn, caption), *loop_tables(found)])
 
 
 def headline(found: LoopStudy) -> Headline:
@@ -67,16 +50,14 @@ def headline(found: LoopStudy) -> Headline:
 def _facts(found: LoopStudy) -> Iterator[Fact]:
     yield Fact("stability", "stable" if found.stability.stable else "unstable", f"slowest decay {number(-found.growth_all_modes, 3)} 1/s")
     if found.controller.tuning is not None:
-        yield Fact("loop gains pass 1 at", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "all of them")
+        yield Fact("gain crossover", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "all loops")
     if found.peaks is not None:
-        yield Fact(
-            "peak of S, modes as modelled", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB or less is usual"
-        )
+        yield Fact("peak sensitivity Ms", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB or less is usual")
     settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
     if settled:
         slowest = float(np.max(settled))
-        shown = f"{number(1e3 * slowest, 3)} ms" if np.isfinite(slowest) else "not"
-        yield Fact("steps settle within", shown, "to 2 %, the slowest of them")
+        shown = f"{number(1e3 * slowest, 3)} ms" if np.isfinite(slowest) else "not settled"
+        yield Fact("settling time (2 %)", shown, "of the slowest step")
     for test in found.runs:
         if test.figures is None:
             yield _error_fact(test)
@@ -181,7 +162,7 @@ def frequency_section(found: LoopStudy) -> Section | None:
     return section(
         "Over frequency",
         [
-            margin_table(found),
+            *margin_tables(found),
             Picture(loops, caption, reading=reading(opened, spots)),
             Picture(
                 sensitivities,
@@ -207,7 +188,7 @@ def measured_section(found: LoopStudy) -> Section | None:
     picture = to_svg(drawn, "measured-loops", "Sensitivities on the measured responses")
     sure = "shaded: 95 % of every line" if seen.low is not None else "the test does not say how sure its responses are"
     caption = f"What every loop leaves of a disturbance along its axis, hold and delay included; {sure}."
-    return section("On the measured responses", [measured_table(found), Picture(picture, caption, reading=reading(drawn))])
+    return section("On the measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:
@@ -224,7 +205,6 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
 
 def time_section(found: LoopStudy) -> Section | None:
     """Steps and trajectories."""
-    blocks = [each(found.runs) for each in (step_table, tracking_table, learning_table, repetition_table, heat_table, leg_table)]
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
     if stepped:
@@ -235,7 +215,7 @@ def time_section(found: LoopStudy) -> Section | None:
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
         pictures += _trajectory_pictures(test, f"trajectory{number_}")
     small = None if found.second_order is None else Prose(found.second_order.text)
-    return section("Over time", [small, *blocks, *pictures])
+    return section("Over time", [small, *time_tables(found.runs), *pictures])
 
 
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
@@ -258,17 +238,13 @@ def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
 
 def error_section(found: LoopStudy) -> Section | None:
     """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
-    blocks: list[Block | None] = [
-        None if found.static_errors is None else rest_table(found.static_errors),
-        noise_table(found),
-        *_noise_pictures(found),
-    ]
+    blocks: list[Block | None] = [*error_tables(found), *_noise_pictures(found)]
     if found.hysteresis is not None:
         drawn = to_svg(
             hysteresis_figure(_worst_loops(found.hysteresis)), "hysteresis", "Hysteresis of a stack with and without its inverse"
         )
         name = found.hysteresis.actuators[_worst_stack(found.hysteresis)]
-        blocks += [hysteresis_table(found.hysteresis), Picture(drawn, f"Stack of {name} alone, driven to and fro in open loop.")]
+        blocks.append(Picture(drawn, f"Isolated stack of {name}, driven to and fro in open loop."))
     return section("Errors and noise", blocks)
 
 

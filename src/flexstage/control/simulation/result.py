@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, Along
+from flexstage.base.record import INNER, Along, Heading, Layout
 from flexstage.control.simulation.machine import Machine
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS
@@ -29,6 +29,8 @@ class Simulated(InNotebook):
     alone, `out_of_range` (g,) those in which a gauge was beyond its range or lost, and the loop went on by its last good reading.
     """
 
+    TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
+
     times: Array
     coordinates: Annotated[tuple[Channel, ...], INNER]
     actuators: tuple[str, ...]
@@ -44,9 +46,9 @@ class Simulated(InNotebook):
     stroke: Array
     volts: Array
     readings: Array
-    saturated: Annotated[Array, Along("actuators")]
-    slewing: Annotated[Array, Along("actuators")]
-    out_of_range: Annotated[Array, Along("gauges")]
+    saturated: Annotated[Array, Along("actuators"), Heading("time at range limit", digits=3, unit="%")]
+    slewing: Annotated[Array, Along("actuators"), Heading("time at speed limit", digits=3, unit="%")]
+    out_of_range: Annotated[Array, Along("gauges"), Heading("time out of range", digits=3, unit="%")]
 
     def motion(self, name: str) -> Array:
         """The true motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` where it was not kept."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated, TypeAlias
+from typing import Annotated, ClassVar, TypeAlias
 
 import numpy as np
 
@@ -16,8 +16,8 @@ from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
 from flexstage.base.processes.jobs import CallError, Line, results
-from flexstage.base.record import INNER, VIEW, Along
-from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, RATIO, TIME
+from flexstage.base.record import INNER, VIEW, Along, Heading, Layout, UnitIn
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, RATIO, SHORT_TIME, TIME
 from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.noise import Kind, NoiseBudget
@@ -38,6 +38,11 @@ _SEEN = 0.75
 """Share of the length of a step after which it counts as not settled within it: lines of a spectrum lead slow ones to their end."""
 _TURNED = np.geomspace(1.0, 0.1, 9)
 """Gains by which the output of a controller is multiplied for the front: a tenth is slower by ten, and quiet."""
+
+
+CROSSOVER = Heading("sensitivity crossover", digits=4)
+SETTLING_TIME = Heading("settling time (2 %)", digits=4, infinite="not settled")
+OVERSHOOT = Heading("overshoot", digits=3, unit="%")
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,28 +72,59 @@ class Rival:
     `warnings` are the loop's.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Comparison of controllers",
+        "crossover worst_noise slowest_settling largest_overshoot delay_margin peak gauge_share",
+        head="controller",
+        notes=(
+            "Worst of all coordinates. Noise of the gauges: their largest share, quantisation included, in a mean square.",
+            "{self.tuned}.",
+        ),
+    )
+
     coordinates: tuple[str, ...]
     units: tuple[str, ...]
     tuned: str
-    peak: float
-    rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
-    noise: Annotated[Array, Along("coordinates")]
-    settling: Annotated[Array, TIME, Along("coordinates")]
-    overshoot: Annotated[Array, Along("coordinates")]
-    delay_margin: Annotated[float, TIME]
-    gauge_share: float | None
+    peak: Annotated[float, Heading("peak sensitivity Ms", digits=4)]
+    rejection: Annotated[Array, FREQUENCY, Along("coordinates"), CROSSOVER]
+    noise: Annotated[Array, Along("coordinates"), UnitIn("units"), Heading("positioning noise", digits=3)]
+    settling: Annotated[Array, SHORT_TIME, Along("coordinates"), SETTLING_TIME]
+    overshoot: Annotated[Array, Along("coordinates"), OVERSHOOT]
+    delay_margin: Annotated[float, SHORT_TIME, Heading(digits=4)]
+    gauge_share: Annotated[float | None, Heading("noise of the gauges", digits=2, unit="%")]
     detuned: DetunedController | None = None
     slowly_rounding: tuple[str, ...] = ()
     warnings: Annotated[tuple[Finding, ...], INNER] = ()
 
     @property
+    def crossover(self) -> Annotated[float, FREQUENCY, INNER, CROSSOVER]:
+        """The lowest sensitivity crossover."""
+        return float(np.min(self.rejection))
+
+    @property
+    def worst_noise(self) -> Annotated[tuple[str, ...], INNER, Heading("positioning noise")]:
+        """The largest rms of translations and of rotations."""
+        largest = {unit: max(value for value, own in zip(self.noise, self.units, strict=True) if own == unit) for unit in self.units}
+        return tuple(f"{1e9 * value:.3g} n{unit}" for unit, value in largest.items())
+
+    @property
+    def slowest_settling(self) -> Annotated[float, SHORT_TIME, INNER, SETTLING_TIME]:
+        """The longest settling time."""
+        return float(np.max(self.settling))
+
+    @property
+    def largest_overshoot(self) -> Annotated[float, INNER, OVERSHOOT]:
+        """The largest overshoot."""
+        return float(np.max(self.overshoot))
+
+    @property
     def figures(self) -> Mapping[str, float]:
         """What counts, each such that less is better: the worst of all coordinates; noise as the mean of logarithms, absent of none."""
         return {
-            "rejection": -float(np.min(self.rejection)),
+            "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),
-            "settling": float(np.max(self.settling)),
-            "overshoot": float(np.max(self.overshoot)),
+            "settling": self.slowest_settling,
+            "overshoot": self.largest_overshoot,
             "delay margin": -self.delay_margin,
             "peak of S": self.peak,
         }

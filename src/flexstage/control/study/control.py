@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.controllers.decentralised import Decentralised, channels
 from flexstage.control.controllers.family import Family
@@ -54,9 +54,18 @@ _FILTER = 1e3
 class SingleLoop:
     """One of several loops: its `law`, with the numbers that its kind has, the `notches` behind it, the `prefilter` of its reference."""
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Notch filters and prefilters", "notch_filters prefilter.frequency prefilter.damping prefilter.lead", head="loop"
+    )
+
     law: Law
     notches: tuple[Notch, ...]
     prefilter: Prefilter | None = None
+
+    @property
+    def notch_filters(self) -> Annotated[tuple[str, ...], INNER, Heading("notch filters")]:
+        """Frequencies and depths."""
+        return tuple(f"{each.frequency:.5g} Hz to {each.depth:.3g}" for each in self.notches)
 
 
 @dataclass(frozen=True, eq=False)

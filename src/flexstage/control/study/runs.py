@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
@@ -15,8 +15,8 @@ from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Table
-from flexstage.base.record import INNER, VIEW
-from flexstage.base.units.quantity import DISPLACEMENT, POWER, SPEED, TEMPERATURE, TIME
+from flexstage.base.record import INNER, VIEW, Heading, Layout, Mark, UnitIn
+from flexstage.base.units.quantity import DISPLACEMENT, POWER, SHORT_TIME, SPEED, TEMPERATURE
 from flexstage.control.learning.learn import Learned
 from flexstage.control.learning.repeat import Repeated
 from flexstage.control.plant_models.creep_plant import add_creep
@@ -42,6 +42,11 @@ _RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 _BAND = 0.02
 _STILL, _FEWEST, _MOST = 5.0, 5_000, 50_000
 _REPEATED = 6
+_ROUNDING = 1e-16
+
+
+def _settled(time: float) -> Mark:
+    return Mark.PLAIN if np.isfinite(time) else Mark.FAIL
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,13 +57,34 @@ class StepAnswer:
     `largest` (f,) [m, rad] the largest true error of each coordinate.
     """
 
-    size: float
+    TABLE: ClassVar[Layout] = Layout(
+        "Steps",
+        "size settling overshoot residual cross_axis_error",
+        head="step",
+        notes=(
+            (
+                "Settling time: the true error stays within 2 % of the step. Cross-axis error: the largest translation and rotation along "
+                "all other axes of the platform, at any time."
+            ),
+        ),
+    )
+
+    size: Annotated[float, UnitIn("unit"), Heading(digits=4)]
     unit: str
-    settling: Annotated[float, TIME]
-    overshoot: float
-    residual: float
+    settling: Annotated[float, SHORT_TIME, Heading("settling time (2 %)", digits=4, infinite="not settled", mark=_settled)]
+    overshoot: Annotated[float, Heading(digits=3, unit="%")]
+    residual: Annotated[float, UnitIn("unit"), Heading("residual error", digits=3)]
     others: Mapping[str, Excursion]
     largest: Annotated[Array, VIEW]
+
+    @property
+    def cross_axis_error(self) -> Annotated[tuple[str, ...], INNER, Heading("cross-axis error")]:
+        """The largest motion of each unit, and its axis; below 0.1 fm, or frad, it is rounding."""
+        largest = {
+            each.unit: max((other.largest, name) for name, other in self.others.items() if other.unit == each.unit)
+            for each in self.others.values()
+        }
+        return tuple(f"{1e9 * value:.3g} n{unit} {name}" for unit, (value, name) in largest.items() if value > _ROUNDING)
 
 
 @dataclass(frozen=True)
@@ -68,11 +94,18 @@ class CoilHeat:
     `power` [W] is what it turns into heat and `warming` [K] by how much that warms it in the end; absent where its data do not tell.
     """
 
-    rms: float
+    TABLE: ClassVar[Layout] = Layout(
+        "Heat of force actuators",
+        "rms held power warming",
+        head="trajectory, actuator",
+        notes=("Each trajectory repeated for ever, without heat removed by motion.",),
+    )
+
+    rms: Annotated[float, UnitIn("unit"), Heading("rms input", digits=3)]
     unit: str
-    held: float | None
-    power: Annotated[float | None, POWER]
-    warming: Annotated[float | None, TEMPERATURE]
+    held: Annotated[float | None, UnitIn("unit"), Heading("continuous limit", digits=3)]
+    power: Annotated[float | None, POWER, Heading("heat", digits=3)]
+    warming: Annotated[float | None, TEMPERATURE, Heading("temperature rise", digits=3)]
 
 
 @dataclass(frozen=True)
@@ -83,16 +116,33 @@ class LegUse:
     how fast: infinite where nothing bounds it.
     """
 
-    added: Annotated[float, DISPLACEMENT]
+    TABLE: ClassVar[Layout] = Layout(
+        "Force feedback and amplifiers",
+        "added stroke_share speed_share is_held",
+        head="trajectory, actuator",
+        notes=("Shares of the amplifier's stroke and speed: both loops together. The simulation does not limit them.",),
+    )
+
+    added: Annotated[float, DISPLACEMENT, Heading("largest added stroke", digits=3, varying=True)]
     largest: Annotated[float, DISPLACEMENT]
     reach: Annotated[float, DISPLACEMENT]
     fastest: Annotated[float, SPEED]
     slew: Annotated[float, SPEED]
 
     @property
-    def is_held(self) -> Annotated[bool, VIEW]:
+    def is_held(self) -> Annotated[bool, VIEW, Heading("achievable", mark={True: Mark.PASS, False: Mark.FAIL}.__getitem__)]:
         """Whether the amplifier gives it."""
         return self.largest <= self.reach and self.fastest <= self.slew
+
+    @property
+    def stroke_share(self) -> Annotated[float, INNER, Heading("share of stroke", digits=3, unit="%")]:
+        """The largest stroke over that of the amplifier."""
+        return self.largest / self.reach
+
+    @property
+    def speed_share(self) -> Annotated[float | None, INNER, Heading("share of speed", digits=3, unit="%")]:
+        """The largest speed over that of the amplifier; absent where nothing bounds it."""
+        return None if np.isinf(self.slew) else self.fastest / self.slew
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.base.number import Array
-from flexstage.base.record import Along, Heading
+from flexstage.base.record import Along, Heading, Layout
 from flexstage.base.units.quantity import LENGTH, SHARE
 from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials
 from flexstage.control.hysteresis.identify import identify_hysteresis
@@ -61,6 +61,12 @@ class Sweep:
     `width` (n,) is that of each stack's loop as a share of its stroke.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Hysteresis of the stacks",
+        "width range rms_error rms_error_inverse improvement",
+        notes=("Isolated stacks in open loop: actual less commanded stroke, as a share of the range swept.",),
+    )
+
     actuators: tuple[str, ...]
     width: Annotated[Array, SHARE, Along("actuators"), Heading("loop width", digits=3)]
     wanted: Array
@@ -73,17 +79,17 @@ class Sweep:
         return np.ptp(self.wanted, axis=0)
 
     @property
-    def rms_error(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error, bare", digits=3)]:
+    def rms_error(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error", digits=3)]:
         """Rms (n,) of what came less what was wanted, as a share of the range swept."""
         return self._error(self.bare)
 
     @property
-    def rms_error_inverse(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("with inverse", digits=3)]:
+    def rms_error_inverse(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error with inverse", digits=3)]:
         """The same with the inverse."""
         return self._error(self.inverse)
 
     @property
-    def improvement(self) -> Annotated[Array, Along("actuators"), Heading("better by", digits=3, infinite="exact")]:
+    def improvement(self) -> Annotated[Array, Along("actuators"), Heading("improvement factor", digits=3, infinite="exact")]:
         """Without inverse over with it (n,); infinite where the inverse is exact but for rounding."""
         exact = self.rms_error_inverse <= _EXACT
         return np.where(exact, np.inf, self.rms_error / np.where(exact, 1.0, self.rms_error_inverse))

@@ -30,7 +30,7 @@ from flexstage.experiment.record_options import (
 )
 from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.experiment.show.report import identify_report
-from flexstage.experiment.show.tables import identified_table, measured_shape_table, peak_table, recorded_table
+from flexstage.experiment.show.tables import identified_table, measured_shape_table, recorded_table
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
@@ -38,7 +38,7 @@ from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.options import Csv, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import print_warning
-from flexstage.show.table import Table
+from flexstage.show.table import Table, result_table
 
 Records: TypeAlias = Annotated[
     list[Path],
@@ -103,5 +103,5 @@ def _body(seen: Identification, shapes: StageShapes | None) -> SideBySide:
 def _tables(seen: Identification) -> Iterator[Table | None]:
     yield recorded_table(seen.test)
     yield identified_table(seen.found)
-    yield peak_table(seen.found.peaks)
+    yield result_table(seen.found.peaks)
     yield measured_shape_table(seen.found) if len(seen.found.frequencies) else None

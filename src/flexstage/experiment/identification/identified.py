@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar, TypeAlias
 
 import numpy as np
 
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW
-from flexstage.base.units.quantity import FREQUENCY, TIME
+from flexstage.base.record import INNER, VIEW, Graded, Heading, Layout
+from flexstage.base.units.quantity import FREQUENCY, RATIO, TIME
 from flexstage.experiment.identification.cluster import Stabilisation
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.diagnosis.peaks import Peak
 from flexstage.experiment.identification.residues import modal_sum, remainder_sum
 from flexstage.experiment.records.record import Channel, Responses
+
+FrequencyInterval: TypeAlias = Annotated[tuple[float, float], FREQUENCY, Heading("95 % interval")]
+DampingRatio: TypeAlias = Annotated[float, RATIO, Heading("damping ratio", digits=4, unit="%")]
+DampingInterval: TypeAlias = Annotated[tuple[float, float], RATIO, Heading("95 % interval", unit="%")]
+Widening: TypeAlias = Annotated[float, Heading("interval inflation", digits=2, mark=Graded(1.0))]
+INFLATION = (
+    "Interval inflation: width of the intervals over the width due to noise alone; above 1 where the residual near the mode exceeds noise."
+)
 
 
 @dataclass(frozen=True)
@@ -27,16 +35,26 @@ class IdentifiedMode:
     `widening`, `complexity` and `significance` are told at `Identified`.
     """
 
-    number: int
-    frequency: Annotated[float, FREQUENCY]
-    frequency_interval: Annotated[tuple[float, float], FREQUENCY]
-    damping: float
-    damping_interval: tuple[float, float]
-    widening: float
+    TABLE: ClassVar[Layout] = Layout(
+        "Modes found",
+        "number frequency frequency_interval damping damping_interval widening complexity significance",
+        notes=(
+            INFLATION,
+            "Complexity: 0 where all outputs move in phase or opposite, 1 for a travelling wave.",
+            "Test statistic: chi-squared of the mode, over the value that noise would exceed once in 1e9 tries.",
+        ),
+    )
+
+    number: Annotated[int, Heading("mode")]
+    frequency: Annotated[float, FREQUENCY, Heading(digits=7)]
+    frequency_interval: FrequencyInterval
+    damping: DampingRatio
+    damping_interval: DampingInterval
+    widening: Widening
     shape: Mapping[str, complex]
     participation: Mapping[str, complex]
-    complexity: float
-    significance: float
+    complexity: Annotated[float, Heading(digits=2, mark=Graded(0.1))]
+    significance: Annotated[float, Heading("test statistic", digits=3, mark=Graded(3.0, 0.0))]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +113,21 @@ class Identified(InNotebook):
             complexity=float(self.complexity[index]),
             significance=float(self.significance[index]),
         )
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The band, the delay and the close modes, for tables."""
+        band = f"between {self.band[0]:.4g} and {self.band[1]:.4g} Hz."
+        if not self.modes:
+            return (f"No mode was found {band}",)
+        late, spread = 1e3 * self.delay, 1e3 * NORMAL_95 * self.delay_deviation
+        close = (
+            f"Modes {' and '.join(map(str, group))} are closer than their half-widths: use their subspace." for group in self.close_modes
+        )
+        delay = (
+            [f"All outputs come {late:.4g} ms late (95 %: +-{spread:.2g} ms); the delay is removed before the fit."] if self.delay else []
+        )
+        return (*close, f"Searched {band}", *delay)
 
     @property
     def close_modes(self) -> Annotated[tuple[tuple[int, ...], ...], VIEW]:

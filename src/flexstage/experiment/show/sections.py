@@ -9,7 +9,6 @@ from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.experiment.show.comparison_figures import compare_figure
-from flexstage.experiment.show.comparison_tables import compare_table, further_table, repeated_table
 from flexstage.experiment.show.figures import (
     LARGEST,
     coherence_figure,
@@ -24,7 +23,6 @@ from flexstage.experiment.show.tables import (
     identified_table,
     measured_shape_table,
     motion_explained_text,
-    peak_table,
     recorded_table,
 )
 from flexstage.show.display import number
@@ -35,7 +33,7 @@ from flexstage.show.scene.pictures import mode_picture
 from flexstage.show.scene.stage import Scene
 from flexstage.show.sections.dynamics import SHAPES
 from flexstage.show.sections.stage import joined_viewers, platform_modes
-from flexstage.show.table import Table
+from flexstage.show.table import Table, result_table
 from flexstage.show.viewer.data import StageData
 from flexstage.show.viewer.motions import Group, Motion, Skeleton
 
@@ -54,7 +52,13 @@ def found_section(seen: Identification) -> Section | None:
     found = seen.found
     text = text if found.inputs else _FLOOR
     shapes = measured_shape_table(found) if len(found.frequencies) else None
-    blocks = [recorded_table(seen.test), data_warning_table(found.data_warnings), identified_table(found), peak_table(found.peaks), shapes]
+    blocks = [
+        recorded_table(seen.test),
+        data_warning_table(found.data_warnings),
+        identified_table(found),
+        result_table(found.peaks),
+        shapes,
+    ]
     return section("Modes found", [*blocks, Prose(text)])
 
 
@@ -165,4 +169,5 @@ def compare_section(found: Compared) -> Section | None:
 
 def compare_tables(found: Compared) -> tuple[Table | None, ...]:
     """The tables of a comparison, in order."""
-    return compare_table(found), repeated_table(found), further_table(found), data_warning_table(found.data_warnings)
+    modes = result_table(found.modes, notes=found.notes, provenance=found.provenance)
+    return modes, result_table(found.repeated), result_table(found.further), data_warning_table(found.data_warnings)

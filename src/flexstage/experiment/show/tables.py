@@ -7,17 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.confidence import NORMAL_95
-from flexstage.experiment.identification.diagnosis.peaks import Peak
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.records.record import Channel, Record, Responses
-from flexstage.show.display import NO_VALUE, align_numbers, number, percent
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
-
-_COMPLEX = 0.1
-_WEAK = 3.0
-_SILENT = 5e-4
-WIDENED = "Widened: how many times wider intervals are than noise makes them, because the fit leaves more than noise near the mode."
+from flexstage.show.display import number, percent
+from flexstage.show.table import Cell, Mark, Table, make_table, matrix_table, result_table
 
 
 def recorded_table(test: Sequence[Record] | Responses) -> Table:
@@ -51,70 +44,15 @@ def _channels(channels: Sequence[Channel]) -> str:
 
 
 def identified_table(found: Identified) -> Table:
-    """Frequencies and damping ratios with their 95 % intervals, and which modes lie so close that only their subspace can be told.
+    """Frequencies and damping ratios with their 95 % intervals, and which modes are so close that only their subspace is known.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
-    >>> identified_table(identify(one_mode_record())).texts()[0]
-    ['mode', 'frequency [Hz]', '95 % interval [Hz]', 'damping [%]', '95 % interval [%]', 'widened', 'complexity', 'close to', 'evidence']
+    >>> identified_table(identify(one_mode_record())).texts()[0][:4]
+    ['mode', 'frequency [Hz]', '95 % interval [Hz]', 'damping ratio']
     """
-    partners = {index: [other + 1 for other in group if other != index] for group in found.close for index in group}
-    frequencies = interval_texts(found.frequencies, found.frequency_intervals)
-    damping = interval_texts(100.0 * found.damping, 100.0 * found.damping_intervals)
-    rows = [
-        (
-            Cell(str(index + 1), Mark.STRONG),
-            *frequencies[index],
-            *damping[index],
-            widening_cell(float(found.widening[index])),
-            Cell(number(float(complexity), 2), Mark.WARN if complexity > _COMPLEX else Mark.PLAIN),
-            ", ".join(map(str, partners.get(index, []))) or NO_VALUE,
-            Cell(number(float(strength), 3), Mark.WARN if strength < _WEAK else Mark.PLAIN),
-        )
-        for index, (complexity, strength) in enumerate(zip(found.complexity, found.significance, strict=True))
-    ]
-    heads = [
-        "mode",
-        *(Column("frequency", "Hz"), Column("95 % interval", "Hz"), Column("damping", "%"), Column("95 % interval", "%")),
-        *(Column("widened"), Column("complexity"), Column("close to"), Column("evidence")),
-    ]
-    notes = [
-        WIDENED,
-        "Complexity: 0 where all outputs move in phase or opposite, 1 for a travelling wave.",
-        "Close: nearer than the half-widths of the peaks; of such modes the subspace is known better than each shape.",
-        "Evidence: chi-square by which the data ask for the mode, over what noise would reach once in 1e9 tries.",
-        f"Looked for between {number(found.band[0], 4)} and {number(found.band[1], 4)} Hz.",
-    ]
-    if found.delay:
-        late, spread = 1e3 * found.delay, 1e3 * NORMAL_95 * found.delay_deviation
-        notes.append(f"All outputs come {number(late, 4)} ms late (95 %: +-{number(spread, 2)} ms): taken out before modes were fitted.")
-    if not rows:
-        notes = [f"No mode was found between {number(found.band[0], 4)} and {number(found.band[1], 4)} Hz."]
-    return make_table("Modes found", heads, rows, notes=notes, provenance=found.provenance)
-
-
-def widening_cell(factor: float) -> Cell:
-    """By how much a mode's intervals are wider than those of noise.
-
-    >>> widening_cell(1.0).text, widening_cell(4.71).text
-    ('1', '4.7')
-    """
-    return Cell(number(factor, 2), Mark.WARN if factor > 1.0 else Mark.PLAIN)
-
-
-def interval_texts(values: Array, intervals: Array) -> list[tuple[str, str]]:
-    """Values with as many decimals as their intervals ask for, and those intervals.
-
-    >>> interval_texts(np.array([118.01234]), np.array([[118.0101, 118.0145]]))
-    [('118.0123', '118.0101 to 118.0145')]
-    """
-    found: list[tuple[str, str]] = []
-    for value, (low, high) in zip(values, intervals, strict=True):
-        width = float(high - low)
-        decimals = 4 if not (np.isfinite(width) and width > 0.0) else int(np.clip(1 - np.floor(np.log10(width)), 0, 6))
-        interval = f"{low:.{decimals}f} to {high:.{decimals}f}" if np.isfinite(width) else NO_VALUE
-        found.append((f"{value:.{decimals}f}", interval))
-    return found
+    table = result_table(found.modes, notes=found.notes, provenance=found.provenance)
+    return table or make_table("Modes found", ["mode"], [], notes=found.notes, provenance=found.provenance)
 
 
 def measured_shape_table(found: Identified) -> Table:
@@ -123,51 +61,12 @@ def measured_shape_table(found: Identified) -> Table:
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
     >>> measured_shape_table(identify(one_mode_record())).texts()
-    [['output', '1'], ['y', '1']]
+    [['', '1'], ['y', '1']]
     """
-    shapes = found.real_shapes
-    shown = [align_numbers(np.where(np.abs(column) < _SILENT, 0.0, column), 4) for column in shapes.T]
-    rows = [
-        (Cell(channel.name, Mark.STRONG), *(Cell(column[row], Mark.FAINT if column[row] == "0" else Mark.PLAIN) for column in shown))
-        for row, channel in enumerate(found.outputs)
-    ]
     units = {channel.unit for channel in found.outputs}
-    notes = ["Rows in different units, as recorded."] if len(units) > 1 else []
-    heads = ["output", *(Column(str(index + 1)) for index in range(shapes.shape[1]))]
-    return make_table("Shapes of the modes", heads, rows, notes=notes)
-
-
-def peak_table(peaks: Sequence[Peak]) -> Table | None:
-    """Peaks that are seen and are no modes, with the reason; `None` where there are none.
-
-    >>> from flexstage.experiment.identification.diagnosis.peaks import Doubt
-    >>> table = peak_table([Peak(50.0, Doubt.TONE, 1e-12, None, 0.1, ("S1", "S2"))])
-    >>> [] if table is None else table.texts()[1][:5]
-    ['50', 'S1, S2', 'below a line', '0.1', '1.0e-12']
-    """
-    if not peaks:
-        return None
-    rows = [
-        (
-            number(peak.frequency, 5),
-            ", ".join(peak.outputs) or NO_VALUE,
-            "below a line" if peak.width is None or peak.width < 1e-3 * peak.resolution else number(peak.width, 3),
-            number(peak.resolution, 3),
-            f"{peak.chance:.1e}",
-            Cell(peak.reason, Mark.WARN),
-        )
-        for peak in peaks
-    ]
-    heads = [
-        Column("frequency", "Hz"),
-        "seen in",
-        Column("width", "Hz"),
-        Column("lines apart", "Hz"),
-        Column("by chance"),
-        "why it is no mode",
-    ]
-    notes = ["By chance: how likely there would be as much without a mode. A mode needs 1e-9, and lines within its width."]
-    return make_table("Peaks seen, not confirmed as modes", heads, rows, notes=notes)
+    return matrix_table(
+        "Shapes of the modes", found.shape_matrix, notes=["Rows in different units, as recorded."] if len(units) > 1 else []
+    )
 
 
 def data_warning_table(warnings: Sequence[str]) -> Table | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
@@ -16,7 +16,8 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.processes.threads import one_thread
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Graded, Heading, Layout, Mark, UnitIn
+from flexstage.base.units.quantity import RATIO
 from flexstage.experiment.comparison import Compared, compare, shared_sensors
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
@@ -59,6 +60,11 @@ class Told(Enum):
     """Theory and test are so far apart that the test tells nothing of single numbers."""
 
 
+_GRADES = {Told.WELL: Mark.PASS, Told.WEAKLY: Mark.WARN, Told.NOT: Mark.FAIL, Told.WITHHELD: Mark.FAIL}
+_DATUM = Heading(digits=6)
+_REMAINING = Heading("remaining variance", digits=2, unit="%")
+
+
 @dataclass(frozen=True)
 class Residual:
     """One datum [Hz, or m/m for gains]: measured, by theory before and after, and the relative standard deviation it was weighted with.
@@ -66,21 +72,27 @@ class Residual:
     That of a gain is relative to the largest gain of its actuator, `scale`.
     """
 
-    name: str
+    TABLE: ClassVar[Layout] = Layout(
+        "Theory and test",
+        "name measured before after deviation misfit_before misfit_after",
+        notes=("Misfits: measured less theory, in standard deviations.",),
+    )
+
+    name: Annotated[str, Heading("datum")]
     unit: str
-    measured: float
-    deviation: float
-    before: float
-    after: float
+    measured: Annotated[float, UnitIn("unit"), _DATUM]
+    deviation: Annotated[float, RATIO, Heading("error", digits=2, unit="%")]
+    before: Annotated[float, UnitIn("unit"), _DATUM]
+    after: Annotated[float, UnitIn("unit"), _DATUM]
     scale: Annotated[float, INNER]
 
     @property
-    def misfit_before(self) -> Annotated[float, VIEW]:
+    def misfit_before(self) -> Annotated[float, VIEW, Heading(digits=3)]:
         """Measured less theory before, in standard deviations."""
         return (self.measured - self.before) / (self.scale * self.deviation)
 
     @property
-    def misfit_after(self) -> Annotated[float, VIEW]:
+    def misfit_after(self) -> Annotated[float, VIEW, Heading(digits=3, mark=Graded(2.0, 3.0))]:
         """Measured less theory after, in standard deviations."""
         return (self.measured - self.after) / (self.scale * self.deviation)
 
@@ -92,16 +104,22 @@ class UpdatedNumber:
     `prior_variance_left` is the share that the test leaves; `told` and `verdict` say how well it tells the number.
     """
 
-    address: str
+    TABLE: ClassVar[Layout] = Layout(
+        "Numbers after the test",
+        "address before after change prior_deviation deviation prior_variance_left told",
+        notes=("Remaining variance: of the prior's. Identified: at most 10 %; weakly identified: at most 20 %.",),
+    )
+
+    address: Annotated[str, Heading("number")]
     unit: str
-    before: float
-    after: float
-    change: float
-    prior_deviation: float
-    deviation: float
+    before: Annotated[float, UnitIn("unit")]
+    after: Annotated[float, UnitIn("unit")]
+    change: Annotated[float, RATIO, Heading(digits=3, unit="%")]
+    prior_deviation: Annotated[float, RATIO, Heading("prior +-", digits=2, unit="%")]
+    deviation: Annotated[float, RATIO, Heading("after +-", digits=2, unit="%")]
     interval: tuple[float, float]
-    prior_variance_left: float
-    told: Told
+    prior_variance_left: Annotated[float, RATIO, _REMAINING]
+    told: Annotated[Told, Heading("identifiability", mark=_GRADES.__getitem__)]
     verdict: str
 
 
@@ -109,11 +127,22 @@ class UpdatedNumber:
 class Combination:
     """A combination of numbers, in prior standard deviations: 1/(1 + s^2) of its prior variance is left at a singular value s."""
 
-    singular_value: float
+    TABLE: ClassVar[Layout] = Layout(
+        "Identifiable combinations",
+        "combination singular_value prior_variance_left",
+        notes=("In prior standard deviations. A singular value of 1 halves the prior variance; far below 1, it stays as it was.",),
+    )
+
+    singular_value: Annotated[float, Heading(digits=3)]
     direction: Mapping[str, float]
 
     @property
-    def prior_variance_left(self) -> Annotated[float, VIEW]:
+    def combination(self) -> str:
+        """Its parts of more than 0.05, for tables."""
+        return ", ".join(f"{part:+.2f} {name}" for name, part in self.direction.items() if abs(part) > 0.05)
+
+    @property
+    def prior_variance_left(self) -> Annotated[float, VIEW, RATIO, _REMAINING]:
         """Share of the prior's variance."""
         return 1.0 / (1.0 + self.singular_value**2)
 
@@ -145,6 +174,14 @@ class Updated(InNotebook):
     compared: Compared
     data_warnings: tuple[str, ...]
     provenance: str
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The errors assumed, and verdicts that need more than a word, for tables."""
+        known = self.assumed
+        gains = "" if known.gain_error is None else f", gains {100.0 * known.gain_error:.3g} %"
+        errors = f"Assumed errors: frequencies of theory {100.0 * known.model_error:.3g} %{gains}; +- is one standard deviation."
+        return errors, *(f"{each.address}: {each.verdict}." for each in self.parameters if each.verdict != each.told.value)
 
     @property
     def parameters(self) -> Annotated[tuple[UpdatedNumber, ...], VIEW]:

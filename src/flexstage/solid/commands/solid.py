@@ -430,9 +430,9 @@ def _accuracy_headline(found: Converged[Any], asked: Resolution) -> Headline:
     return page.Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % was asked.", found.error <= asked.accuracy)
 
 
-def _verification_tables(found: verification.Verification) -> Iterator[Table | str]:
+def _verification_tables(found: verification.Verification) -> Iterator[Table | str | None]:
     if found.rows:
         yield found.headline
-    for name, rows in found.groups.items():
-        yield verification_table(name, rows)
+    for rows in found.groups.values():
+        yield verification_table(rows)
     yield verdict_table_of(found)

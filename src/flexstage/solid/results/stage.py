@@ -17,7 +17,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.record import INNER, VIEW, Called, Heading
 from flexstage.base.units.quantity import RATIO
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -38,8 +38,8 @@ _BODY = " (body)"
 class BodyCost:
     """By platform mode (k,), the share of strain energy that elastic bodies hold, and what that costs of the frequency."""
 
-    strain_energy_share: Annotated[Array, RATIO]
-    cost_in_frequency: Annotated[Array, RATIO]
+    strain_energy_share: Annotated[Array, RATIO, Heading("strain energy in bodies", digits=3, unit="%")]
+    cost_in_frequency: Annotated[Array, RATIO, Heading("frequency change", digits=3, unit="%")]
 
 
 @dataclass(frozen=True, eq=False)

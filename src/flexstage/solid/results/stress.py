@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import Along, Heading
+from flexstage.base.record import INNER, Along, Heading
 from flexstage.base.units.quantity import PRESSURE, RATIO
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.parts.material import Material
@@ -18,6 +18,10 @@ from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.solver.assemble import Placed
 from flexstage.solid.fea.solver.surface import element_coordinates, piece_vertices, stresses, von_mises
 from flexstage.solid.results.read import SolidRead
+
+SHARP_CORNERS = "At sharp inner corners the true stress has no limit: there it grows with the resolution."
+SILENT = 1e3
+"""Stress [Pa] below which there is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +48,17 @@ class LinkStress(InNotebook):
         """The name with the least safety, or with the highest stress where no yield stress is known."""
         safety = self.safety
         return self.names[int(np.argmax(self.highest) if np.isnan(safety).all() else np.nanargmin(safety))]
+
+    @property
+    def peak(self) -> Annotated[float, INNER, PRESSURE, Heading("stress", digits=4)]:
+        """The highest stress of the weakest [Pa]; zero below 1 kPa."""
+        found = self.at(self.weakest)
+        return found if found >= SILENT else 0.0
+
+    @property
+    def least_safety(self) -> Annotated[float, INNER, RATIO, Heading("safety", digits=4)]:
+        """The safety of the weakest; NaN without stress."""
+        return float(self.safety[self.names.index(self.weakest)]) if self.peak else np.nan
 
     def largest(self, count: int) -> LinkStress:
         """The links and bodies with the highest stress, highest first, `count` of them at most."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -12,9 +12,10 @@ from flexstage.analysis.linear_statics.unit_output import UnitOutput
 from flexstage.analysis.linear_statics.units import as_vector, driven_units
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
+from flexstage.base.labelled import NOISE
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import COMPLIANCE, LENGTH, RATIO
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -24,7 +25,7 @@ from flexstage.models.linear.static import displacement, static_gain
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.results.read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
-from flexstage.solid.results.stress import LinkStress, link_stress
+from flexstage.solid.results.stress import SHARP_CORNERS, LinkStress, link_stress
 from flexstage.spatial.frame import COMPONENTS
 
 _TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -39,7 +40,18 @@ class SolidUnit(UnitOutput, InNotebook):
     linear; `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
     """
 
-    strokes: Annotated[Array, LENGTH]
+    TABLE: ClassVar[Layout] = Layout(
+        "Units alone as solids",
+        "copy axial lateral gain ideal_gain loss stress.weakest stress.peak stress.least_safety",
+        head="unit",
+        notes=(
+            "Each unit alone, output on a rigid face.",
+            "Axial (K_a) and lateral (K_l) stiffness: actuators fixed, all other motions of the output prevented.",
+            f"Gain and stress: output guided along its direction and not loaded, full stroke. {SHARP_CORNERS}",
+        ),
+    )
+
+    strokes: Annotated[Array, LENGTH, Heading("stroke", unit="um")]
     stress: LinkStress | None
     motion: Array
     read: Annotated[SolidRead, INNER]
@@ -55,7 +67,7 @@ class SolidUnit(UnitOutput, InNotebook):
         return self.read.freedoms
 
     @property
-    def loss(self) -> Annotated[float, RATIO]:
+    def loss(self) -> Annotated[float, RATIO, Heading(unit="%")]:
         """Share of the ideal output that is lost."""
         return 1.0 - self.gain / self.ideal_gain
 
@@ -65,14 +77,20 @@ class SolidUnit(UnitOutput, InNotebook):
         return 1.0 / self.axial
 
     @property
-    def commands(self) -> Annotated[Array, LENGTH]:
+    def commands(self) -> Annotated[Array, LENGTH, Heading("commanded output", unit="um")]:
         """Ideal outputs (k,) [m] of the strokes: what was commanded."""
         return self.ideal_gain * self.strokes
 
     @property
-    def outputs(self) -> Annotated[Array, LENGTH]:
+    def outputs(self) -> Annotated[Array, LENGTH, Heading("output", unit="um")]:
         """Outputs (k,) [m] of the strokes."""
         return self.gain * self.strokes
+
+    @property
+    def lost(self) -> Annotated[Array, INNER, LENGTH, Heading("lost motion", unit="um")]:
+        """Commands less outputs (k,) [m]; zero within rounding."""
+        found = self.commands - self.outputs
+        return np.where(np.abs(found) < NOISE * np.abs(self.commands), 0.0, found)
 
 
 @check_arguments

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from flexstage.analysis.trust import Trust
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
-from flexstage.base.record import INNER, VIEW
+from flexstage.base.record import INNER, VIEW, Heading, Layout, Mark, UnitIn
 from flexstage.base.units.quantity import RATIO
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.assembly.expand import expand
@@ -40,6 +40,14 @@ from flexstage.solid.results.units import SolidUnit, solid_units
 from flexstage.spatial.frame import COMPONENTS
 
 _CLOSE = 0.02
+_GRADES = {
+    Trust.DEPENDENT: Mark.FAINT,
+    Trust.EITHER: Mark.PASS,
+    Trust.THEORY: Mark.PASS,
+    Trust.CALIBRATED: Mark.WARN,
+    Trust.UNCLEAR: Mark.WARN,
+    Trust.FEA: Mark.FAIL,
+}
 _TIMES = 1.5
 """A factor from which differences are told as factors."""
 _WORDS = {
@@ -50,6 +58,7 @@ _WORDS = {
     "rad/(N m)": ("soft", "stiff"),
 }
 """What a figure that is too large makes of theory, and one that is too small, by unit."""
+_SHOWN = UnitIn("shown_unit")
 
 
 @dataclass(frozen=True)
@@ -62,25 +71,35 @@ class Row:
     `fea_error` there is no verdict.
     """
 
+    TABLE: ClassVar[Layout] = Layout(
+        "Theory and finite elements: {self.group}",
+        "figure mapped theory calibrated fea fea_error difference calibrated_difference modal_assurance trust",
+    )
+
     group: str
     figure: str
     unit: str
-    theory: float | None
-    fea: float
-    fea_error: float | None
-    mapped: float | None = None
-    calibrated: float | None = None
+    theory: Annotated[float | None, _SHOWN]
+    fea: Annotated[float, _SHOWN, Heading("FEA")]
+    fea_error: Annotated[float | None, RATIO, Heading("FEA error", digits=2, unit="%")]
+    mapped: Annotated[float | None, _SHOWN] = None
+    calibrated: Annotated[float | None, _SHOWN] = None
     calibration: tuple[str, ...] = ()
-    modal_assurance: float | None = None
+    modal_assurance: Annotated[float | None, Heading("MAC", digits=3)] = None
     reason: str | None = None
 
     @property
-    def difference(self) -> Annotated[float | None, RATIO]:
+    def shown_unit(self) -> str:
+        """The unit of tables: a loss is shown in per cent."""
+        return "%" if self.figure == "loss" else self.unit
+
+    @property
+    def difference(self) -> Annotated[float | None, RATIO, Heading("theory error", digits=3, unit="%")]:
         """Theory over FEA less one."""
         return None if self.theory is None else _relative(self.theory, self.fea)
 
     @property
-    def calibrated_difference(self) -> Annotated[float | None, RATIO]:
+    def calibrated_difference(self) -> Annotated[float | None, RATIO, Heading("calibrated error", digits=3, unit="%")]:
         """Calibrated theory over FEA less one."""
         return None if self.calibrated is None else _relative(self.calibrated, self.fea)
 
@@ -90,7 +109,7 @@ class Row:
         return not self.calibration
 
     @property
-    def trust(self) -> Annotated[Trust | None, VIEW]:
+    def trust(self) -> Annotated[Trust | None, VIEW, Heading(absent="no verdict", mark=_GRADES.__getitem__)]:
         """Which of them to trust; absent where there is no verdict."""
         if self.calibration:
             return Trust.DEPENDENT

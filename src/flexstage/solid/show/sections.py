@@ -59,7 +59,7 @@ def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
 
 def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
     """Every distinct unit alone, with its stress at the full stroke."""
-    blocks: list[Block] = [solid_unit_table(found)]
+    blocks: list[Block | None] = [solid_unit_table(found)]
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
         surfaces = _in_megapascals(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}))
@@ -160,5 +160,5 @@ def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping
 
 def verification_section(found: Verification) -> Section | None:
     """Theory beside finite elements, with the verdicts in words first."""
-    tables = [verification_table(name, rows) for name, rows in found.groups.items()]
+    tables = [verification_table(rows) for rows in found.groups.values()]
     return section("Theory and finite elements", [verdict_table_of(found), *tables])

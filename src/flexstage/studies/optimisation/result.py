@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.analysis.assessment.requirements import Requirement, Verdict
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.record import INNER, VIEW, Called, Heading, Layout, Mark, UnitIn
+from flexstage.base.units.quantity import RATIO
 from flexstage.studies.optimisation.problem import Objective, OptimisationProblem
 from flexstage.studies.optimisation.values import Point, values_of
 from flexstage.studies.sweeps.definition import Study
@@ -25,11 +26,30 @@ class Binding:
     `price`: how much the objective changes [its SI unit] when the limit or end moves up by one unit [its SI unit], the rest re-optimised.
     """
 
-    name: str
-    limit: float
+    TABLE: ClassVar[Layout] = Layout(
+        "Binding limits",
+        "name limit gain price",
+        notes=(
+            "Gain: of the objective, where the limit or end of the range is relaxed by 1 % of its value. Price: its change per unit of it.",
+        ),
+    )
+
+    name: Annotated[str, Heading("limit")]
+    limit: Annotated[float, UnitIn("unit"), Heading("value", digits=6)]
     unit: str
-    price: float
+    price: Annotated[float, UnitIn("price_unit"), Heading(digits=4)]
     of_range: Annotated[bool, Called("range")]
+    objective_unit: Annotated[str, INNER]
+
+    @property
+    def price_unit(self) -> str:
+        """SI unit of the price."""
+        return self.objective_unit if self.unit == "1" else f"{self.objective_unit}/{self.unit}"
+
+    @property
+    def gain(self) -> Annotated[float, INNER, UnitIn("objective_unit"), Heading("gain for 1 %", digits=3)]:
+        """Gain of the objective where the limit is relaxed by 1 % of its value."""
+        return abs(self.price) * (abs(self.limit) or 1.0) * 0.01
 
 
 @dataclass(frozen=True)
@@ -48,15 +68,23 @@ class Start:
     feasible and as good as the best one within a ten-thousandth.
     """
 
+    TABLE: ClassVar[Layout] = Layout("Starts", "value violation evaluated end agrees", head="start")
+
     begun: Annotated[Array, VIEW]
     ended: Annotated[Array, VIEW]
-    value: Annotated[float, Called("objective")]
-    violation: float
-    evaluated: int
+    value: Annotated[float, Called("objective"), UnitIn("unit"), Heading(digits=6)]
+    violation: Annotated[float, RATIO, Heading(digits=2, unit="%")]
+    evaluated: Annotated[int, Heading("designs")]
     converged: bool
     history: Array
-    agrees: bool
+    agrees: Annotated[bool, Heading(mark={True: Mark.PASS, False: Mark.WARN}.__getitem__)]
+    unit: Annotated[str, INNER]
     reason: str = ""
+
+    @property
+    def end(self) -> str:
+        """How it ended."""
+        return self.reason or ("converged" if self.converged else "no further step found")
 
     @property
     def accepted(self) -> Annotated[tuple[Accepted, ...], VIEW, Called("history")]:

@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Annotated
+from typing import Annotated, ClassVar
 
+import numpy as np
+
+from flexstage.analysis.assessment.requirements import Verdict
+from flexstage.base.labelled import NOISE
 from flexstage.base.notebook import InNotebook
-from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.record import INNER, VIEW, Called, Heading, Layout, UnitIn
+from flexstage.base.units.quantity import RATIO
 from flexstage.studies.sweeps.definition import Asked, Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.execution.store import Failure, Results
@@ -41,15 +46,28 @@ class ResponseEffects(Asked):
     standard errors of an index and of one of second order are those of Saltelli's plan, with pairs.
     """
 
-    min_value: float
-    mean: float
+    TABLE: ClassVar[Layout] = Layout("Responses", "name address min_value mean spread max_value within_limits")
+
+    min_value: Annotated[float, UnitIn("unit"), Heading("minimum")]
+    mean: Annotated[float, UnitIn("unit")]
     deviation: float
-    max_value: float
+    max_value: Annotated[float, UnitIn("unit"), Heading("maximum")]
+    within_limits: Annotated[float | None, INNER, RATIO, Heading("limit met by", unit="%")]
     first_order: Mapping[str, float]
     total_order: Mapping[str, float] | None
     standard_error: float
     pairs_standard_error: float
     pairs: tuple[PairShare, ...]
+
+    @property
+    def address(self) -> Annotated[str, INNER, Heading("measure")]:
+        """The measure with its point."""
+        return f"{self.key} at {self.point}" if self.measure.kind.pointed else self.key
+
+    @property
+    def spread(self) -> Annotated[float, INNER, UnitIn("unit"), Heading("deviation")]:
+        """The standard deviation; zero within rounding."""
+        return 0.0 if self.deviation < NOISE * abs(self.mean) else self.deviation
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +129,14 @@ class Sweep(StudyResult):
         """Every combination of versions, processor and kernel that computed a part of the results."""
         return self.results.made
 
+    def _share_within_limits(self, name: str) -> float | None:
+        """Share of all designs that keep the limits on a measure; a failed design keeps none."""
+        measure, values = self.study.columns[name], self.results.column(name)
+        limits = [each for each in self.study.limits if (each.key, each.point) == (measure.key, measure.point)]
+        if not limits or not len(values):
+            return None
+        return float(np.mean(np.all([Verdict(each, values).passed for each in limits], axis=0)))
+
     def _response(self, index: int, name: str) -> ResponseEffects:
         found = self.effects
         total = None if found.total is None else dict(zip(found.variables, found.total[:, index].tolist(), strict=True))
@@ -121,6 +147,7 @@ class Sweep(StudyResult):
             mean=float(found.mean[index]),
             deviation=float(found.deviation[index]),
             max_value=float(found.high[index]),
+            within_limits=self._share_within_limits(name),
             first_order=dict(zip(found.variables, found.first[:, index].tolist(), strict=True)),
             total_order=total,
             standard_error=float(found.errors[0, index]),

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
 
 from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict
 from flexstage.base.number import Array
-from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.record import INNER, VIEW, Called, Graded, Heading, Layout, UnitIn
+from flexstage.base.units.quantity import RATIO, SHARE
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.sweeps.definition import Asked
 from flexstage.studies.sweeps.execution.store import Results
@@ -78,12 +79,12 @@ class Yield:
     high: Annotated[float, INNER]
 
     @property
-    def share(self) -> Annotated[float, VIEW]:
+    def share(self) -> Annotated[float, VIEW, SHARE, Heading("yield", mark=Graded(1.0, 0.9))]:
         """Share of the copies."""
         return self.kept / self.copies
 
     @property
-    def interval(self) -> Annotated[tuple[float, float], VIEW]:
+    def interval(self) -> Annotated[tuple[float, float], VIEW, RATIO, Heading("95 % interval", unit="%")]:
         """The ends of its interval."""
         return self.low, self.high
 
@@ -92,13 +93,20 @@ class Yield:
 class Line:
     """A line of the specification, the column it is about, its nominal value and its yield."""
 
+    TABLE: ClassVar[Layout] = Layout("Yield", "column wanted nominal kept.share kept.interval")
+
     requirement: Annotated[Requirement, INNER]
     column: Annotated[str, Called("line")]
-    nominal: float
+    nominal: Annotated[float, UnitIn("unit")]
     kept: Annotated[Yield, Called("yield")]
 
     @property
-    def wanted(self) -> Annotated[str, VIEW]:
+    def unit(self) -> str:
+        """The SI unit of its value."""
+        return self.requirement.quantity.si
+
+    @property
+    def wanted(self) -> Annotated[str, VIEW, Heading("required")]:
         """What it asks for."""
         return self.requirement.text
 

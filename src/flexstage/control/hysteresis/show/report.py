@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from flexstage.base.version import __version__
 from flexstage.control.hysteresis.show.figures import stack_figure
-from flexstage.control.hysteresis.show.tables import plays_table, stack_table
+from flexstage.control.hysteresis.show.tables import stack_tables
 from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.show.display import percent
 from flexstage.show.figures.export import to_svg
@@ -27,10 +27,11 @@ def hysteresis_report(test: StackTest) -> str:
     """
     drawn = to_svg(stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the volts of the inverse")
     caption = "Grey the record, blue the model and its error; green the volts that the inverse gives for the recorded strokes."
+    stack, plays = stack_tables(test)
     sections = [
-        section("Hysteresis", [Picture(drawn, caption), stack_table(test), Prose(_METHOD)]),
+        section("Hysteresis", [Picture(drawn, caption), stack, Prose(_METHOD)]),
         section("Warnings", [warning_table(test.hysteresis.warnings)]),
-        section("Model", [plays_table(test)]),
+        section("Model", [plays]),
     ]
     named = test.source or "record"
     origin = (("record", named), ("model", "measured"), ("flexstage", __version__))

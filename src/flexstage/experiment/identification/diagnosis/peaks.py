@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy
 
 from flexstage.base.number import Array
-from flexstage.base.record import VIEW
+from flexstage.base.record import VIEW, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.experiment.identification.evidence import Evidence, is_even
 from flexstage.experiment.identification.group import Lost
@@ -55,12 +55,18 @@ class Peak:
     lines within their width.
     """
 
-    frequency: Annotated[float, FREQUENCY]
+    TABLE: ClassVar[Layout] = Layout(
+        "Peaks seen, not confirmed as modes",
+        "frequency outputs width resolution chance reason",
+        notes=("Probability: of a peak as large without a mode. A mode needs 1e-9, and frequency lines within its width.",),
+    )
+
+    frequency: Annotated[float, FREQUENCY, Heading(digits=5)]
     doubt: Doubt
-    chance: float
-    width: Annotated[float | None, FREQUENCY]
-    resolution: Annotated[float, FREQUENCY]
-    outputs: tuple[str, ...]
+    chance: Annotated[float, Heading("probability by chance", digits=2)]
+    width: Annotated[float | None, FREQUENCY, Heading(digits=3, absent="below a line")]
+    resolution: Annotated[float, FREQUENCY, Heading("line spacing", digits=3)]
+    outputs: Annotated[tuple[str, ...], Heading("seen in")]
 
     @property
     def reason(self) -> Annotated[str, VIEW]:

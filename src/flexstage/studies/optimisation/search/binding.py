@@ -33,14 +33,26 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
         weight = model.weights[len(problem.objective) + number].total
         if weight > _COUNTS:
             rise = weight / own.scale if limit.sense is Sense.AT_LEAST else -weight / own.scale
-            found.append((weight, Binding(f"{limit.key} {limit.text}", limit.limit, limit.quantity.si, back * rise, of_range=False)))
+            found.append(
+                (
+                    weight,
+                    Binding(
+                        f"{limit.key} {limit.text}",
+                        limit.limit,
+                        limit.quantity.si,
+                        back * rise,
+                        of_range=False,
+                        objective_unit=objective.measure.quantity.si,
+                    ),
+                )
+            )
     found += [(abs(slope), each) for slope, each in _ends(setting, problem, point, back)]
     return tuple(each for _, each in sorted(found, key=lambda item: -item[0]))
 
 
 def _ends(setting: Setting, problem: Problem, point: Point, back: float) -> Iterator[tuple[float, Binding]]:
     """Ends of ranges at which the Lagrangian still falls outward."""
-    size = len(point.shares)
+    size, unit = len(point.shares), setting.definition.objectives[0].measure.quantity.si
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))
     slopes = lagrangian(problem, point, model.weights)
     assert slopes is not None  # noqa: S101  of one design, pieces correspond
@@ -52,4 +64,4 @@ def _ends(setting: Setting, problem: Problem, point: Point, back: float) -> Iter
         per_share = float(np.imag(variable.at(np.array(share + 1e-20j)))) / 1e-20
         limit = variable.high if upper else variable.low
         name = f"{variable.name} {'at most' if upper else 'at least'} (range)"
-        yield slope, Binding(name, limit, variable.quantity.si, back * slope / per_share, of_range=True)
+        yield slope, Binding(name, limit, variable.quantity.si, back * slope / per_share, of_range=True, objective_unit=unit)

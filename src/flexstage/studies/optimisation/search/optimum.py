@@ -54,7 +54,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     broken, against, near = interrupted, (), None
     if not interrupted:
         against, near, interrupted = _conclude(set_up, point, traces, counted)
-    starts = tuple(_start(problem, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
+    starts = tuple(_start(set_up, begin, trace, point) for begin, trace in zip(begins, traces, strict=True))
     return Optimum(
         study=study,
         definition=definition,
@@ -119,13 +119,25 @@ def best_of(problem: Problem, traces: list[Trace]) -> Point | None:
     return min(points, key=problem.worth, default=None)
 
 
-def _start(problem: Problem, begin: Array, trace: Trace, best: Point | None) -> Start:
+def _start(set_up: Setting, begin: Array, trace: Trace, best: Point | None) -> Start:
+    problem, unit = set_up.problem, set_up.definition.objectives[0].measure.quantity.si
     if trace.point is None:
         return Start(
-            begin, begin, np.nan, np.nan, trace.evaluated, converged=False, history=np.zeros((0, 2)), agrees=False, reason=trace.reason
+            begin,
+            begin,
+            np.nan,
+            np.nan,
+            trace.evaluated,
+            converged=False,
+            history=np.zeros((0, 2)),
+            agrees=False,
+            unit=unit,
+            reason=trace.reason,
         )
     ended = best_of(problem, [trace]) or trace.point
     history = np.array([[point.values[0], problem.violation(point)] for point in trace.history])
     good = best is not None and problem.excess(ended) <= SPARE
     agrees = good and best is not None and problem.worth(ended) - problem.worth(best) <= _ALIKE * max(1.0, abs(problem.worth(best)))
-    return Start(begin, ended.shares, float(ended.values[0]), problem.violation(ended), trace.evaluated, trace.converged, history, agrees)
+    return Start(
+        begin, ended.shares, float(ended.values[0]), problem.violation(ended), trace.evaluated, trace.converged, history, agrees, unit
+    )

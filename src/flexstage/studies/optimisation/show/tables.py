@@ -8,22 +8,22 @@ from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import Quantity
 from flexstage.base.units.unit import show
-from flexstage.show.display import format_value, number
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
-from flexstage.studies.optimisation.result import Binding, Contradiction, Front, Optimum
+from flexstage.show.display import format_value
+from flexstage.show.table import Cell, Column, Mark, Table, make_table, result_table
+from flexstage.studies.optimisation.result import Contradiction, Front, Optimum, Start
 from flexstage.studies.optimisation.values import Point, values_of
 from flexstage.studies.sweeps.definition import Study
 
 
-def optimise_tables(found: Optimum) -> list[Table]:
+def optimise_tables(found: Optimum) -> list[Table | None]:
     """Objective and variables before and after, limits, what binds and what it costs, the starts.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
-    >>> [table.title for table in optimise_tables(optimise(*leaf_study()))]
-    ['Objective', 'Variables', 'Limits', 'What binds', 'Starts']
+    >>> [table.title for table in optimise_tables(optimise(*leaf_study())) if table]
+    ['Objective', 'Variables', 'Limits', 'Binding limits', 'Starts']
     """
-    return [_objective(found), _variables(found), _limits(found), *([_binding(found)] if found.binding else []), _starts(found)]
+    return [_objective(found), _variables(found), _limits(found), result_table(found.binding), result_table(_starts(found))]
 
 
 def front_tables(found: Front) -> list[Table]:
@@ -102,32 +102,8 @@ def _limits(found: Optimum) -> Table:
     return make_table("Limits", heads, rows)
 
 
-def _binding(found: Optimum) -> Table:
-    unit = found.definition.objectives[0].measure.quantity.si
-    rows = [(Cell(each.name, Mark.STRONG), format_value(each.limit, each.unit, 6), *_price(each, unit)) for each in found.binding]
-    note = (
-        "What the objective gains when the limit, or end of the range, gives way by 1 % of its value; and its change per unit it is raised."
-    )
-    return make_table("What binds", ["binds", Column("at"), Column("1 % of it buys"), Column("per unit")], rows, notes=[note])
-
-
-def _price(each: Binding, unit: str) -> tuple[str, str]:
-    gain = abs(each.price) * (abs(each.limit) or 1.0) * 0.01
-    per = f"{unit}/{each.unit}" if each.unit != "1" else unit
-    return format_value(gain, unit, 3), f"{number(each.price, 4)} {per}"
-
-
-def _starts(found: Optimum) -> Table:
-    unit = found.definition.objectives[0].measure.quantity.si
-    rows = []
-    for index, each in enumerate(found.starts):
-        ended = each.reason or ("converged" if each.converged else "no further step found")
-        agrees = Cell("yes", Mark.PASS) if each.agrees else Cell("no", Mark.WARN)
-        worst = f"{100.0 * each.violation:.2g} %" if each.violation > 1e-8 else "none"
-        value = "" if np.isnan(each.value) else format_value(each.value, unit, 6)
-        rows.append(("as it stands" if index == 0 else f"Sobol {index}", value, worst, str(each.evaluated), ended, agrees))
-    heads = ["start", Column("objective"), Column("violation"), Column("designs"), "end", "agrees"]
-    return make_table("Starts", heads, rows)
+def _starts(found: Optimum) -> dict[str, Start]:
+    return {f"Sobol {index}" if index else "as it stands": each for index, each in enumerate(found.starts)}
 
 
 def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:

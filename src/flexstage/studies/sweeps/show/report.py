@@ -15,6 +15,7 @@ from flexstage.show.page import Block, Head, Headline, Picture, Section, page, s
 from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import first_motion, stage_section
+from flexstage.show.table import result_table
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
@@ -23,7 +24,7 @@ from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.result import Sweep
 from flexstage.studies.sweeps.show.figures import designs_figure, effects_figure
 from flexstage.studies.sweeps.show.interaction_figures import pairs_figure, strongest_figure
-from flexstage.studies.sweeps.show.tables import failure_table, pair_table, response_table, share_table, variable_table
+from flexstage.studies.sweeps.show.tables import failure_table, limit_notes, pair_table, share_table, variable_table
 
 _STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
 _MAP = "Shares of variance in percent: of variables alone on the diagonal, of what two do together beyond that below it."
@@ -40,7 +41,7 @@ def sweep_report(sweep: Sweep) -> str:
     stages = _ends(study, results)
     sections: list[Section | None] = [
         _extremes(study, stages),
-        section("Responses", [response_table(study, results, found), designs]),
+        section("Responses", [result_table(sweep.responses, notes=limit_notes(study, results)), designs]),
         caveat_section(study.design, loaded_findings(study)),
         section("What was varied", [variable_table(study, results)]),
         section("Effects", [share_table(found), effects]),

@@ -7,10 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from flexstage.analysis.assessment.requirements import Verdict
-from flexstage.base.labelled import NOISE
-from flexstage.show.display import NO_VALUE, format_value, number
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.display import number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table, result_table
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.execution.store import Results
@@ -22,10 +20,14 @@ _LEAST = 0.01
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 
 
-def study_tables(sweep: Sweep) -> list[Table]:
+def study_tables(sweep: Sweep) -> list[Table | None]:
     """What was varied, how the responses are distributed, what does it, and designs that failed."""
     study, results, found = sweep.study, sweep.results, sweep.effects
-    tables = [variable_table(study, results), response_table(study, results, found), share_table(found)]
+    tables: list[Table | None] = [
+        variable_table(study, results),
+        result_table(sweep.responses, notes=limit_notes(study, results)),
+        share_table(found),
+    ]
     tables += [pair_table(found)] if np.any(np.isfinite(found.pairs)) else []
     return tables + ([failure_table(results)] if results.failures else [])
 
@@ -46,44 +48,7 @@ def variable_table(study: Study, results: Results) -> Table:
     return make_table("Varied", ["variable", "number", "from", "to"], rows, notes=[f"{note}."])
 
 
-def response_table(study: Study, results: Results, found: Effects) -> Table:
-    """Responses with their distributions, and how many designs keep the limits on them."""
-    rows = []
-    for index, (name, measure) in enumerate(study.columns.items()):
-        unit = measure.quantity.si
-        noise = NOISE * abs(found.mean[index])
-        spread = 0.0 if found.deviation[index] < noise else found.deviation[index]
-        cells = [
-            format_value(float(each), unit, 5) if found.used else NO_VALUE
-            for each in (found.low[index], found.mean[index], spread, found.high[index])
-        ]
-        rows.append(
-            (
-                Cell(name, Mark.STRONG),
-                f"{measure.key} at {measure.point}" if measure.kind.pointed else measure.key,
-                *cells,
-                _share_within_limits(study, results, name),
-            )
-        )
-    heads = ["least", "mean", "deviation", "largest"]
-    return make_table(
-        "Responses",
-        ["response", "measure", *(Column(head) for head in heads), Column("limit met by", "%")],
-        rows,
-        notes=_limit_notes(study, results),
-    )
-
-
-def _share_within_limits(study: Study, results: Results, name: str) -> str:
-    """Share of all designs that keep the limits on a measure; a failed design keeps none."""
-    measure, values = study.columns[name], results.column(name)
-    verdicts = [Verdict(each, values) for each in study.limits if (each.key, each.point) == (measure.key, measure.point)]
-    if not verdicts or not len(values):
-        return ""
-    return number(100.0 * float(np.mean(np.all([verdict.passed for verdict in verdicts], axis=0))), 4)
-
-
-def _limit_notes(study: Study, results: Results) -> list[str]:
+def limit_notes(study: Study, results: Results) -> list[str]:
     """How many designs keep all limits; where none does, which are kept by none, or contradict one another."""
     kept = study.feasible(results.responses)
     if not study.limits or not len(kept):

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.show.display import display_unit_of, format_value, number
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.table import Cell, Column, Mark, Table, make_table, result_table
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.sweeps.show.tables import failure_table
 from flexstage.studies.tolerances.allowance import Allowance
@@ -14,7 +14,7 @@ from flexstage.studies.tolerances.crosstalk import OPEN
 from flexstage.studies.tolerances.distribution import Distribution, Shape
 from flexstage.studies.tolerances.run import Toleranced
 from flexstage.studies.tolerances.scatter import Scatter
-from flexstage.studies.tolerances.summary import Crosstalk, Yield
+from flexstage.studies.tolerances.summary import Crosstalk
 
 _FAR = 10.0
 _FINE = 1e3
@@ -25,9 +25,9 @@ _COLUMNS = (
 _NO_YIELD = "There is no yield: neither the design's [requirements] nor the study's [limits] state what a good stage is."
 
 
-def tolerance_tables(found: Toleranced) -> list[Table]:
+def tolerance_tables(found: Toleranced) -> list[Table | None]:
     """What scatters, what the specification says of it, how responses are distributed, what does it, what is allowed, crosstalk."""
-    tables = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
+    tables: list[Table | None] = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
     if found.summary.lines:
         tables.append(allowance_table(found))
     tables += [crosstalk_table(found, each) for each in found.summary.crosstalk]
@@ -72,26 +72,15 @@ def _size(scatter: Scatter, value: float) -> str:
     return f"{number(100.0 * value, 4)} %" if scatter.relative else format_value(value, scatter.quantity.si, 4)
 
 
-def yield_table(found: Toleranced) -> Table:
+def yield_table(found: Toleranced) -> Table | None:
     """Each line of the specification, its nominal value and its yield; or that there is none."""
-    if found.summary.together is None:
+    together, failed = found.summary.together, found.summary.failed
+    if together is None:
         return make_table("Yield", [""], [(_NO_YIELD,)])
-    spread = found.summary.spread
-    rows = []
-    for line in found.summary.lines:
-        column, unit = spread.names.index(line.column), line.requirement.quantity.si
-        numbers = [format_value(value, unit) for value in (line.nominal, float(spread.deviation[column]))]
-        rows.append((Cell(line.column, Mark.STRONG), line.requirement.text, *numbers, *_yield(line.kept)))
-    rows.append((Cell("all together", Mark.STRONG), "", "", "", *_yield(found.summary.together)))
-    heads = ["line", "wanted", Column("as drawn"), Column("deviation"), Column("yield", "%"), Column("95 % interval", "%")]
-    failed = found.summary.failed
-    notes = [f"{failed} of {found.summary.copies} copies have no values and count as missing every line."] if failed else []
-    return make_table("Yield", heads, rows, notes=notes)
-
-
-def _yield(kept: Yield) -> tuple[Cell, Cell]:
-    mark = Mark.PASS if kept.kept == kept.copies else Mark.WARN if kept.share > 0.9 else Mark.FAIL
-    return Cell(_percent(kept.share), mark, bar=kept.share), Cell(f"{_percent(kept.low)} to {_percent(kept.high)}")
+    interval = f"95 % interval {_percent(together.low)} to {_percent(together.high)} %"
+    notes = [f"All together: {_percent(together.share)} % ({interval})."]
+    notes += [f"{failed} of {found.summary.copies} copies have no values and count as missing every line."] if failed else []
+    return result_table(found.summary.lines, notes=notes)
 
 
 def _percent(share: float) -> str:
