@@ -153,10 +153,9 @@ def row_table(
     counts = [len(names) for _, names in ends]
     along = list(chain.from_iterable(names for _, names in ends))
     names = {name: _spread(values, counts) for name, values in owner_names(source).items()} | ({ends[0][0]: along} if ends[0][0] else {})
-    named = [_name_column(*each) for each in _headed(names, head).items()]
-    table = _columns_table(
-        title, [*named, *(each for path in fields for each in _columns_at(records, path, counts, along))], notes, provenance
-    )
+    columns = [_name_column(*each) for each in _headed(names, head).items()]
+    columns += [each for path in fields for each in _columns_at(records, path, counts, along)]
+    table = _columns_table(title, columns, notes, provenance)
     rows = [(replace(first, mark=Mark.STRONG), *others) for first, *others in table.rows]
     if order:
         factors = np.nan_to_num(np.array(_values_at(records, order, counts), dtype=float), nan=-1.0, posinf=1e300)

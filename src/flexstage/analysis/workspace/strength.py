@@ -15,7 +15,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
-from flexstage.base.record import VIEW, Heading, Layout
+from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import RATIO
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand

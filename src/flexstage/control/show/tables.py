@@ -163,13 +163,10 @@ def time_tables(runs: Sequence[Run]) -> list[Table | None]:
     """Steps, tracking errors, learning, limits, and the load on actuators."""
     simulated = {run.course.name: run.simulated for run in runs}
     lost = {name: each for name, each in simulated.items() if np.any(each.out_of_range)}
-    followed = [run for run in runs if run.figures is None]
+    followed = {run.course.name: run.tracking for run in runs if run.figures is None}
     return [
         result_table({run.course.name: run.step for run in runs if run.step is not None}),
-        *(
-            column_table(f"Tracking error, {run.course.name}", replace(run.tracking, columns=_TRACKING), head="coordinate")
-            for run in followed
-        ),
+        *(column_table(f"Tracking error, {name}", replace(each, columns=_TRACKING), head="coordinate") for name, each in followed.items()),
         result_table({name: each for name, each in simulated.items() if np.any(each.saturated + each.slewing)}),
         row_table("Gauges out of range", lost, "out_of_range", head="trajectory, gauge") if lost else None,
         result_table({run.course.name: run.learned for run in runs if run.learned is not None}),
@@ -204,9 +201,8 @@ def _load_table(found: RestErrors) -> Table | None:
     if not np.any(found.load):
         return None
     values, units = np.stack([found.load, found.load_left], axis=-1), tuple((unit, unit) for unit in TWIST_UNITS)
-    return column_table(
-        "Deflection by loads", Matrix(values, COMPONENTS, ("actuators fixed", "with load feedforward"), units), head="along"
-    )
+    found = Matrix(values, COMPONENTS, ("actuators fixed", "with load feedforward"), units)
+    return column_table("Deflection by loads", found, head="along")
 
 
 def noise_table(found: LoopStudy) -> Table:
