@@ -13,6 +13,7 @@ from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.workspace.drive import drive
 from flexstage.analysis.workspace.small import second_order
 from flexstage.base.finding import DesignError
+from flexstage.base.labelled import Matrix
 from flexstage.base.storage.document import plain
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
@@ -21,12 +22,12 @@ from flexstage.control.plant_models.coordinates import coordinates
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
 from flexstage.control.show.playing import response_motions
 from flexstage.control.show.sections import margin_spots, time_section
-from flexstage.control.show.tables import margin_tables, noise_table, static_error_table, time_tables
-from flexstage.control.simulation.result import other_motions
+from flexstage.control.show.tables import margin_tables, noise_table, static_error_tables, time_tables
+from flexstage.control.simulation.result import Excursion, other_motions
 from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
 from flexstage.control.study.course import courses, sampled_course
 from flexstage.control.study.resolve import default_rate, resolve
-from flexstage.control.study.runs import rest_rms
+from flexstage.control.study.runs import StepAnswer, rest_rms
 from flexstage.control.study.setup import (
     AmplifierSetup,
     AxisAmplitudes,
@@ -153,9 +154,23 @@ def test_rasters_and_spirals_go_along_any_two_motions() -> None:
 def test_static_errors_are_by_coordinate_reached_and_commanded() -> None:
     found = _calm().static_errors
     assert found is not None
-    table = static_error_table(found)
+    table, corrected = static_error_tables(found)
+    assert {cell.text for row in corrected.rows for cell in row[1:]} == {"0"}
     assert float(table.rows[0][1].text) == pytest.approx(found.ideal_map.error.at("x", "x").item(), rel=1e-4)
     assert any(f"ideal mapping R_a {percent(found.ideal_map.largest, 3)}" in note for note in table.notes)
+
+
+def test_crosstalk_is_told_in_every_unit() -> None:
+    """Lengths and angles are each told, and the largest of each, whatever their numbers in metres and radians are."""
+    found = _calm().static_errors
+    assert found is not None
+    units = (("1", "m/rad"), ("1", "m/rad"), ("rad/m", "1"))
+    error = Matrix(np.array([[0.01, 0.0], [0.002, 0.0], [5.0, 0.0]]), ("x", "y", "rz"), ("x", "rz"), units)
+    table = static_error_tables(replace(found, ideal_map=replace(found.ideal_map, error=error)))[0]
+    assert table.texts()[2:] == [["y [um]", "0.002", "0"], ["rz [urad]", "5", "0"]]
+    moved = {"x": Excursion(1e-9, "m"), "y": Excursion(3e-9, "m"), "rx": Excursion(2e-9, "rad"), "rz": Excursion(5e-8, "rad")}
+    answer = StepAnswer(1e-6, "m", 0.1, 0.0, 0.0, moved, np.zeros(1))
+    assert answer.cross_axis_error == ("3 nm y", "50 nrad rz")
 
 
 def test_rates_are_round_and_fast_enough() -> None:

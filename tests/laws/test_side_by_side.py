@@ -25,6 +25,7 @@ from flexstage.control.tuning.outcome import Outcome, bench, outcome
 from flexstage.control.tuning.search import field
 from flexstage.control.tuning.search_spec import SearchSpec
 from flexstage.control.tuning.view import view
+from flexstage.show.table import Mark
 
 VC_D = VibrationSetup(criterion=Criterion.VC_D)
 FLOOR = Floor(VC_D, VC_D, VC_D)
@@ -51,6 +52,7 @@ def test_the_front_is_what_no_other_beats_at_once():
     shown = comparison_tables(found)[0]
     assert shown is not None
     assert [row[3].text for row in shown.rows] == ["20", "30", "30", "not settled"]
+    assert [row[0].text for row in shown.rows for cell in row[1:5] if cell.mark is Mark.PASS] == ["PI", "PI", "PID", "LQG"]
 
 
 def test_noise_that_nothing_makes_is_won_by_none():

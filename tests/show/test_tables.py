@@ -139,6 +139,8 @@ def test_renderers_show_the_same_cells(name: str) -> None:
     if loss is None:
         return
     table = mode_table(loss)
+    assert table.provenance == loss.provenance
+    assert Mark.PASS in {row[-1].mark for row in table.rows}
     page = html.unescape(to_html(table))
     assert all(to_typography(cell.text) in page for row in table.rows for cell in row)
     (shown,) = (each for each in to_rich(table, 1000) if hasattr(each, "row_count"))
@@ -192,8 +194,10 @@ def test_groups_hold_tables() -> None:
 def test_rounding_noise_of_the_linear_map_is_shown_as_nothing(name: str, moved: list[str]) -> None:
     """A planar stage errs in its plane; what finite kinematics leave of the other axes is rounding, 1e-21 m and less."""
     found = analysed(name).workspace.map_error
-    rows = {row[0]: row[1] for row in result_table(found).texts()[1:]}
-    assert [axis for axis in rows if rows[axis] != "0"] == moved
+    table = result_table(found)
+    rows = {row[0]: row[1:] for row in table.texts()[1:]}
+    assert [axis for axis in rows if rows[axis] != ["0", *"-" * len(found.actuators)]] == moved
+    assert any("0 stands for rounding noise" in text for text in table.notes) == (len(moved) < 6)
 
 
 def test_only_a_stated_opening_is_spoken_of() -> None:

@@ -99,7 +99,12 @@ def make_table(
 
 
 def text_table(
-    title: str, heads: Sequence[Column | str], rows: Mapping[str, str | Sequence[str]], *, notes: Iterable[str] = ()
+    title: str,
+    heads: Sequence[Column | str],
+    rows: Mapping[str, str | Sequence[str]],
+    *,
+    notes: Iterable[str] = (),
+    provenance: str = "",
 ) -> Table | None:
     """A table of names with a text each, or several; `None` without any.
 
@@ -107,7 +112,7 @@ def text_table(
     [['', 'source'], ['steel', 'data sheet']]
     """
     cells = [(Cell(name, Mark.STRONG), *([texts] if isinstance(texts, str) else texts)) for name, texts in rows.items()]
-    return make_table(title, heads, cells, notes=notes) if rows else None
+    return make_table(title, heads, cells, notes=notes, provenance=provenance) if rows else None
 
 
 def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
@@ -231,13 +236,14 @@ def sheet_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance:
     return _columns_table(title, [*names, *(field_column(*each) for each in sheet.columns.items())], notes, provenance)
 
 
-def column_table(title: str, matrix: Matrix, *, head: str = "", unit: str = "", notes: Iterable[str] = ()) -> Table:
+def column_table(title: str, matrix: Matrix, *, head: str = "", unit: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
     """A labelled matrix whose columns are quantities, as `matrix_columns` shows them; `head` heads the names, `unit` is a display unit.
 
     >>> column_table("a", Matrix(np.array([[2e-6, 3.0]]), ("x",), ("low", "share"), (("m", "1"),)), head="along").texts()
     [['along', 'low [um]', 'share'], ['x', '2', '3']]
     """
-    return _columns_table(title, [_name_column(head, matrix.rows), *matrix_columns(matrix, heading=Heading(unit=unit))], notes)
+    columns = [_name_column(head, matrix.rows), *matrix_columns(matrix, heading=Heading(unit=unit))]
+    return _columns_table(title, columns, notes, provenance)
 
 
 def _name_column(head: str, names: Iterable[Any]) -> _ColumnCells:
@@ -442,7 +448,13 @@ def _zero_noise(values: Array, least: float = 0.0) -> Array:
 
 
 def matrix_table(
-    title: str, matrix: Matrix, *, against: Matrix | None = None, units: tuple[str, ...] = (), notes: Iterable[str] = ()
+    title: str,
+    matrix: Matrix,
+    *,
+    against: Matrix | None = None,
+    units: tuple[str, ...] = (),
+    notes: Iterable[str] = (),
+    provenance: str = "",
 ) -> Table:
     """A labelled matrix (first design of a batch) in display units.
 
@@ -460,7 +472,7 @@ def matrix_table(
     said += batch_note(matrix.values, 2)
     ends = _ends(matrix)
     if ends is None:
-        return column_table(title, replace(matrix, values=kept), notes=[*notes, *said])
+        return column_table(title, replace(matrix, values=kept), notes=[*notes, *said], provenance=provenance)
     rows, columns = (tuple(display_unit_of(unit, 0.0, *units) for unit in own) for own in ends)
     heads = [Column(name, _unit(form)) for name, form in zip(short_names(matrix.columns), columns, strict=True)]
     lines = [
@@ -468,7 +480,7 @@ def matrix_table(
         for name, form, line in zip(short_names(matrix.rows), rows, kept, strict=True)
     ]
     ratio = ["Entries: row unit per column unit."] if all(any(_unit(form) for form in forms) for forms in (rows, columns)) else []
-    return make_table(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said])
+    return make_table(title, [Column("", numeric=False), *heads], lines, notes=[*notes, *ratio, *said], provenance=provenance)
 
 
 def short_names(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
-from flexstage.base.record import INNER, VIEW, Heading, Layout
+from flexstage.base.record import INNER, VIEW, Heading, Layout, Mark
 from flexstage.base.units.quantity import FREQUENCY, SHARE
 from flexstage.models.batch.choice import Choice, choose, compliance_root, participation, platform_rows
 from flexstage.models.linear.eigen import ALL_MODES, Eigen, lowest_modes, sign_weights
@@ -28,6 +28,7 @@ _REPEATED = 1e-6
 _ROUNDING = 1e3 * float(np.finfo(float).eps)
 _EQUAL = 1e-6
 _LISTED = 24
+_ROLES = {"platform": Mark.PASS, "local, near": Mark.WARN, "local": Mark.FAINT}
 _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 
@@ -57,7 +58,7 @@ class Mode:
         return "in plane" if self.in_plane else "out of plane"
 
     @property
-    def role(self) -> Annotated[str, INNER]:
+    def role(self) -> Annotated[str, INNER, Heading(mark=_ROLES.__getitem__)]:
         """Whose mode it is."""
         return "platform" if self.platform else "local, near" if self.local else "local"
 

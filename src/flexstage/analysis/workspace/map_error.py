@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -12,8 +12,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, index_of_largest
-from flexstage.base.record import VIEW, Layout
+from flexstage.base.number import Array, first_design, index_of_largest
+from flexstage.base.record import INNER, VIEW, Layout
 from flexstage.base.units.quantity import LENGTH
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -33,7 +33,7 @@ class MapError(InNotebook):
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Error of the linear map", "table", notes=("Finite less linear kinematics at {self.points} combinations of strokes.",)
+        "Error of the linear map", "errors_and_strokes", notes=("Finite less linear kinematics at {self.points} combinations of strokes.",)
     )
 
     actuators: tuple[str, ...]
@@ -48,6 +48,18 @@ class MapError(InNotebook):
     def points(self) -> Annotated[int, VIEW]:
         """How many combinations of strokes were tried."""
         return len(self.strokes)
+
+    @property
+    def errors_and_strokes(self) -> Annotated[Matrix, INNER]:
+        """The same without strokes where nothing but rounding is left."""
+        found = self.table
+        rounding = (np.arange(found.values.shape[-1]) > 0) & (self.worst[..., None] == 0.0)
+        return replace(found, values=np.where(rounding, np.nan, found.values))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is rounding."""
+        return ("0 stands for rounding noise of the positions.",) if np.any(first_design(self.worst, 1) == 0.0) else ()
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:

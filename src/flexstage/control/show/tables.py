@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import zip_longest
 
 import numpy as np
 
@@ -33,6 +34,8 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _LEAST_DAMPED, _MOVED = 0.01, 1e-3
 _TRACKING = ("measured rms", "measured peak", "true rms", "true peak")
+_AIMS = ("rejection", "noise", "settling", "overshoot", "delay margin", "peak of S")
+"""What is compared, in the order of columns."""
 _BY_COORDINATE = ("rejection", "noise", "settling", "overshoot")
 
 
@@ -61,6 +64,7 @@ def loop_table(found: LoopStudy) -> Table:
     if found.peaks is not None:
         peaks = {"sensitivity Ms": found.peaks.sensitivity, "complementary sensitivity Mt": found.peaks.complementary}
         rows += [(f"peak {name}", f"{number(each.value, 4)} at {number(each.frequency, 4)} Hz") for name, each in peaks.items()]
+        notes.append("Sensitivity S: remaining share of a disturbance, amplified above 1; T: share of a reference that the motion follows.")
         notes.append("Peak sensitivities: of modes as modelled.")
     if not found.retention.complete or found.retention.frequency is not None:
         notes.append(_retained(found.retention))
@@ -180,20 +184,24 @@ def error_tables(found: LoopStudy) -> list[Table | None]:
     """Static errors without the loop, noise with it, hysteresis of the stacks."""
     static = found.static_errors
     return [
-        *([] if static is None else [static_error_table(static), _load_table(static)]),
+        *([] if static is None else [*static_error_tables(static), _load_table(static)]),
         noise_table(found),
         None if found.hysteresis is None else result_table(found.hysteresis),
     ]
 
 
-def static_error_table(found: RestErrors) -> Table:
-    """Static errors in open loop: coordinates reached (rows) by coordinates commanded."""
+def static_error_tables(found: RestErrors) -> list[Table]:
+    """Static errors in open loop, without and with lost motion corrected: coordinates reached (rows) by coordinates commanded."""
     errors = {"ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
     if found.other_gains is not None:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains
     largest = ", ".join(f"{name} {percent(each.largest, 3)}" for name, each in errors.items())
     notes = ["Commanded less reached, by the ideal mapping R_a.", f"Largest error, rotations as lengths: {largest}."]
-    return matrix_table("Static errors without the loop", found.ideal_map.error, notes=notes)
+    error, corrected = found.ideal_map.error, found.lost_motion_gains.error
+    return [
+        matrix_table("Static errors without the loop", error, notes=notes),
+        matrix_table("Static errors, lost motion corrected by command", corrected, against=error),
+    ]
 
 
 def _load_table(found: RestErrors) -> Table | None:
@@ -241,7 +249,21 @@ def comparison_tables(found: Comparison) -> list[Table | None]:
         f"Best in {best}. Not dominated in crossover, noise, settling and delay margin: {'; '.join(map(kind_name, found.front))}.",
         *(f"Not possible: {kind_name(name)}: {reason}" for name, reason in found.reasons.items()),
     ]
-    return [result_table(named, notes=notes), row_table("Comparison by coordinate", named, *_BY_COORDINATE, head="controller, coordinate")]
+    table = result_table(named, notes=notes)
+    return [
+        table and _mark_best(table, found),
+        row_table("Comparison by coordinate", named, *_BY_COORDINATE, head="controller, coordinate"),
+    ]
+
+
+def _mark_best(table: Table, found: Comparison) -> Table:
+    """The comparison with the best value of each column marked."""
+    wins = [found.wins.get(aim) for aim in _AIMS]
+    rows = (
+        (first, *(replace(cell, mark=Mark.PASS) if name == best else cell for cell, best in zip_longest(cells, wins)))
+        for name, (first, *cells) in zip(found.controllers, table.rows, strict=True)
+    )
+    return replace(table, rows=tuple(rows))
 
 
 def kind_name(name: str) -> str:

@@ -29,7 +29,7 @@ def drift_table(drift: Drift) -> Table:
     """
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
     notes = [f"Strokes held. {ground_text(drift.ground)}; its point ({at}) mm stays."]
-    return matrix_table("Thermal drift", drift.motion, units=_NANO, notes=notes)
+    return matrix_table("Thermal drift", drift.motion, units=_NANO, notes=notes, provenance=drift.provenance)
 
 
 def ground_text(ground: Ground) -> str:
@@ -73,7 +73,7 @@ def _budget_table(title: str, matrix: Matrix, sums: Array, budget: ErrorBudget) 
     notes += [f"Not stated, so not counted: {', '.join(missing)}."] if missing else []
     notes += [f"Not known, so not counted: {name}, for {reason}." for name, reason in budget.reasons.items()]
     found = Matrix(values, COMPONENTS, columns, ratio_units(TWIST_UNITS, ("1",) * len(columns)))
-    return matrix_table(title, found, units=_NANO, notes=notes)
+    return matrix_table(title, found, units=_NANO, notes=notes, provenance=budget.provenance)
 
 
 def gauge_drift_table(drift: Drift) -> Table | None:

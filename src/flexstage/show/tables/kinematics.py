@@ -26,7 +26,8 @@ def mobility_table(kinematics: Kinematics) -> Table | None:
     rows = {name: (str(len(each)), ", ".join(each)) for name, each in named.items() if each or name != "force actuators"}
     rows["free internal modes"] = str(len(kinematics.idle)), "move neither platform nor stroke"
     rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"
-    return text_table("Mobility", ["", Column("number"), "which"], rows, notes=[actuation_text(kinematics)])
+    notes = [actuation_text(kinematics)]
+    return text_table("Mobility", ["", Column("number"), "which"], rows, notes=notes, provenance=kinematics.provenance)
 
 
 def actuation_text(kinematics: Kinematics) -> str:

@@ -25,7 +25,7 @@ def mode_table(modes: Modes) -> Table | None:
     """
     listed = listed_modes(modes)
     notes = [PLATFORM_MODES, *_partial(modes), *_unlisted(modes, listed), *batch_note(modes.frequencies, 1)]
-    return result_table(tuple(map(modes.mode, listed)), notes=notes)
+    return result_table(tuple(map(modes.mode, listed)), notes=notes, provenance=modes.provenance)
 
 
 def listed_modes(modes: Modes) -> tuple[int, ...]:

@@ -26,4 +26,4 @@ def random_table(found: RandomResponse) -> Table:
     units = tuple((channel.unit, *("%",) * len(found.inputs)) for channel in found.outputs)
     told = Matrix(values, found.responding, ("rms", *(f"from {name}" for name in found.disturbing)), units)
     band = f"From {number(found.band[0], 4)} to {number(found.band[1], 4)} Hz; inputs uncorrelated. {found.method}."
-    return column_table("Random response", told, head="output", notes=[band])
+    return column_table("Random response", told, head="output", notes=[band], provenance=found.provenance)

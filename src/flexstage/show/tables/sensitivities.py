@@ -52,4 +52,4 @@ def _ranking_table(title: str, found: Sensitivities, values: Array, *, heads: Se
     ranked = Matrix(whole, names, ("value", *heads), tuple((unit, *("1",) * len(heads)) for unit in units))
     rest = len(found.parameters) - len(order)
     notes = [note, *([f"{rest} further parameters with smaller effects."] if rest > 0 else [])]
-    return column_table(title, ranked, head="parameter", notes=notes)
+    return column_table(title, ranked, head="parameter", notes=notes, provenance=found.provenance)
