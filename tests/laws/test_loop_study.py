@@ -166,7 +166,8 @@ def test_crosstalk_is_told_in_every_unit() -> None:
     assert found is not None
     units = (("1", "m/rad"), ("1", "m/rad"), ("rad/m", "1"))
     error = Matrix(np.array([[0.01, 0.0], [0.002, 0.0], [5.0, 0.0]]), ("x", "y", "rz"), ("x", "rz"), units)
-    table = static_error_tables(replace(found, ideal_map=replace(found.ideal_map, error=error)))[0]
+    one = replace(found.ideal_map, error=error)
+    table = static_error_tables(replace(found, ideal_map=one, lost_motion_gains=one))[0]
     assert table.texts()[2:] == [["y [um]", "0.002", "0"], ["rz [urad]", "5", "0"]]
     moved = {"x": Excursion(1e-9, "m"), "y": Excursion(3e-9, "m"), "rx": Excursion(2e-9, "rad"), "rz": Excursion(5e-8, "rad")}
     answer = StepAnswer(1e-6, "m", 0.1, 0.0, 0.0, moved, np.zeros(1))

@@ -133,16 +133,13 @@ class Layout:
 
     Fields may be paths (`requirement.key`) and `INNER`; of a labelled matrix, its columns are shown; fields without a value in any row are
     left out. Title and notes may hold attributes of the result, as `{self.point}`: of several results a title those of the first, notes by
-    name those of each where they differ. A result adds notes that depend on its values by a property `notes`. `order`: rows ascend by
-    that field, unknown values first. `merged`: rows with equal cells are one.
+    name those of each where they differ. A result adds notes that depend on its values by a property `notes`.
     """
 
     title: str
     fields: str = ""
     head: str = ""
     notes: tuple[str, ...] = ()
-    order: str = ""
-    merged: bool = False
 
 
 @dataclass(frozen=True)

@@ -133,8 +133,6 @@ def row_table(
     source: Any,
     *fields: str,
     head: str = "",
-    order: str = "",
-    merged: bool = False,
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table:
@@ -142,7 +140,7 @@ def row_table(
 
     `source` is a mapping or sequence of records of one kind, or a record. Arrays `Along` names are a row a name, as are labelled matrices.
     `fields` are those shown, in that order (absent: all that a cell can hold); `head` stands over the names, `path, axis` over two. Values
-    outside of a field's `Bound` are marked. `order` and `merged` as in `Layout`.
+    outside of a field's `Bound` are marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -161,12 +159,7 @@ def row_table(
     columns = [_name_column(*each) for each in _headed(names, head).items()]
     columns += [each for path in fields for each in _columns_at(records, path, counts, along)]
     table = _columns_table(title, columns, notes, provenance)
-    rows = [(replace(first, mark=Mark.STRONG), *others) for first, *others in table.rows]
-    if order:
-        factors = np.nan_to_num(np.array(_values_at(records, order, counts), dtype=float), nan=-1.0, posinf=1e300)
-        rows = [rows[place] for place in np.argsort(np.round(factors, 6), kind="stable")]
-    table = replace(table, rows=tuple(rows))
-    return merge_rows(table) if merged else table
+    return replace(table, rows=tuple((replace(first, mark=Mark.STRONG), *others) for first, *others in table.rows))
 
 
 def _headed(names: Mapping[str, Iterable[Any]], head: str) -> dict[str, Iterable[Any]]:
@@ -294,7 +287,7 @@ def result_table(source: Any, fields: str = "", *, title: str = "", notes: Itera
     known = [field_at(one, path) for path in paths] or values_of(one)[0].items()
     if one is source and not any(field.axes or isinstance(value, Matrix) for field, value in known):
         return record_table(title, one, *paths, notes=said, provenance=provenance)
-    table = row_table(title, source, *paths, head=layout.head, order=layout.order, merged=layout.merged, notes=said, provenance=provenance)
+    table = row_table(title, source, *paths, head=layout.head, notes=said, provenance=provenance)
     return table if table.rows else None
 
 

@@ -50,8 +50,6 @@ class Buckling(InNotebook):
         "Buckling of single parts",
         "table ends",
         head="part",
-        order="factor",
-        merged=True,
         notes=("Euler's load of each part, its ends as listed.",),
     )
 

@@ -39,8 +39,6 @@ class HingeStress(InNotebook):
         "Stress in the hinges",
         "table",
         head="hinge",
-        order="safety",
-        merged=True,
         notes=("Von Mises stress at the worst corner of all strokes from no voltage, dead load included; peak: with the notch factor.",),
     )
 

@@ -9,7 +9,7 @@ from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.page import Block, Picture, Prose, Section, fold, section
 from flexstage.show.table import result_table
 from flexstage.show.tables.force_workspace import force_workspace_tables
-from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_tables
+from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_tables, weakest_first
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
@@ -51,7 +51,9 @@ def strength_section(analysis: Analysis) -> Section | None:
     if reach is not None:
         return section("Forces, strength and clearance", _strength(reach))
     return (
-        None if analysis.buckling is None else section("Buckling", [result_table(analysis.buckling.stage), result_table(analysis.buckling)])
+        None
+        if analysis.buckling is None
+        else section("Buckling", [result_table(analysis.buckling.stage), weakest_first(analysis.buckling)])
     )
 
 
@@ -60,13 +62,13 @@ def _strength(reach: Workspace) -> list[Block | None]:
     text = "Stress, buckling and loads count from the stage relaxed without voltage, over all corners of the strokes, dead load included."
     return [
         Prose(text) if stressed else None,
-        result_table(reach.stress),
+        weakest_first(reach.stress),
         result_table(reach.platform_lines),
         *load_tables(reach),
         result_table(reach.clearance),
         fold(
             "Stacks against the stage, buckling",
             result_table(reach.stack_lines),
-            *([] if reach.buckling is None else [result_table(reach.buckling.stage), result_table(reach.buckling)]),
+            *([] if reach.buckling is None else [result_table(reach.buckling.stage), weakest_first(reach.buckling)]),
         ),
     ]

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
+from flexstage.analysis.workspace.buckling import Buckling
+from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import Utilisation
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Number
 from flexstage.show.display import format_value, number
-from flexstage.show.table import Table, first_design, result_table
+from flexstage.show.table import Table, first_design, merge_rows, result_table
 from flexstage.spatial.frame import MOTION
 
 
@@ -55,11 +58,21 @@ def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
     """Forces of platform and stacks, stress, buckling and axial forces."""
     yield result_table(workspace.platform_lines)
     yield result_table(workspace.stack_lines)
-    yield result_table(workspace.stress)
+    yield weakest_first(workspace.stress)
     if workspace.buckling is not None:
         yield result_table(workspace.buckling.stage)
-        yield result_table(workspace.buckling)
+        yield weakest_first(workspace.buckling)
     yield from load_tables(workspace)
+
+
+def weakest_first(found: HingeStress | Buckling | None) -> Table | None:
+    """The table of stress or of buckling loads, the smallest factor first (unknown ones before it); rows with equal cells are one."""
+    table = result_table(found)
+    if found is None or table is None:
+        return None
+    factors = first_design(found.safety if isinstance(found, HingeStress) else found.factor, 1)
+    order = np.argsort(np.round(np.nan_to_num(factors, nan=-1.0, posinf=1e300), 6), kind="stable")
+    return merge_rows(replace(table, rows=tuple(table.rows[place] for place in order)))
 
 
 def load_tables(workspace: Workspace) -> Iterator[Table | None]:
