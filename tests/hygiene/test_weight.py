@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 28_500,
+    "base": 28_800,
     "spatial": 3_900,
     "parts": 46_000,
     "beams": 25_500,
     "mechanism": 59_800,
     "cases": 13_700,
     "models": 113_900,
-    "analysis": 70_000,
-    "show": 72_900,
-    "solid": 80_600,
-    "experiment": 104_500,
-    "control": 174_200,
-    "studies": 55_300,
+    "analysis": 70_200,
+    "show": 73_700,
+    "solid": 80_100,
+    "experiment": 103_200,
+    "control": 172_700,
+    "studies": 55_100,
     "apps": 38_800,
     ".": 400,
-    "all": 887_400,
+    "all": 885_300,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
