@@ -162,9 +162,9 @@ def row_table(
     return replace(table, rows=tuple((replace(first, mark=Mark.STRONG), *others) for first, *others in table.rows))
 
 
-def _headed(names: Mapping[str, Iterable[Any]], head: str) -> dict[str, Iterable[Any]]:
+def _headed(names: Mapping[str, Iterable[Any]], head: str) -> dict[str, tuple[Any, ...]]:
     """Names under the heads stated, one each, else under their own."""
-    return dict(zip(head.split(", ") if head else names, names.values(), strict=True))
+    return dict(zip(head.split(", ") if head else names, map(tuple, names.values()), strict=True))
 
 
 def _row_names(record: Any, paths: Iterable[str]) -> tuple[str, Sequence[Any]]:

@@ -209,8 +209,8 @@ def _load_table(found: RestErrors) -> Table | None:
     if not np.any(found.load):
         return None
     values, units = np.stack([found.load, found.load_left], axis=-1), tuple((unit, unit) for unit in TWIST_UNITS)
-    found = Matrix(values, COMPONENTS, ("actuators fixed", "with load feedforward"), units)
-    return column_table("Deflection by loads", found, head="along")
+    moved = Matrix(values, COMPONENTS, ("actuators fixed", "with load feedforward"), units)
+    return column_table("Deflection by loads", moved, head="along")
 
 
 def noise_table(found: LoopStudy) -> Table:
