@@ -99,7 +99,8 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
         [
             Prose(text),
             stiffness_table(stage.statics),
-            Abreast((Picture(polar, "Stiffness in the plane by direction of the force."), principal_table(stage.statics))),
+            principal_table(stage.statics),
+            Picture(polar, "Stiffness in the plane by direction of the force."),
             Folded("Stiffness by angle, centre of stiffness", (direction_table(stage.statics), centre_table(stage.statics))),
             mode_table(stage.modes),
             Abreast(tuple(_mode_pictures(stage)), narrow=True),
