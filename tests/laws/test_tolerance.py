@@ -347,7 +347,7 @@ BAD = {
     'w = { address = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
     'w = { address = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
     'w = { address = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard",
-    'w = { of = "leaf.thickness", normal = "1e308 m" }': "deviations reach inf mm (5 standard deviations)",
+    'w = { address = "leaf.thickness", normal = "1e308 m" }': "deviations reach inf mm (5 standard deviations)",
     'w = { address = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and is to be greater than 0",
     'v = { address = "leaf.thickness", uniform = "60 %" }\nw = { address = "hinges.thickness", uniform = "60 %" }': "reach 0.6 mm: it",
     'w = { address = "leaf.thickness" }': "it is not said how far it deviates",

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-_OPTIONS = """
+_TEXT = """
 --reading --model          --at --point                --load-at --load-point        --points --steps          --hold --fixed
 --beyond --post-buckling   --side --branch            --copy --instance         --size --amount
 --about --rotation         --along --translation       --inputs --input-quantity     --tap --input-signal      --noise --drive-rms
@@ -11,14 +11,12 @@ _OPTIONS = """
 --damping --force-feedback --goal --tune-for           --single --float32            --fast --no-realtime      --free --parameters
 --parameter --parameters   --parameters --list-parameters                            --parameter --case-parameter
 --what --scope             --of kind
-"""
-_KEYS = """
+
 reading model              place placements            require requirements          change overrides          mode_limit max_mode_frequency
 stands_for replaces        gap_back gap_negative       warmth face_temperature_difference                      removes subtract
 left residual_hysteresis   by method                   by amplitude                  of axes                   of address
 each independent           aim objective               given compliance_matrix
-"""
-_NAMES = """
+
 stance operating_point     Stance OperatingPoint       critical critical_load        critical_factors buckling_factors
 trace continuation         branch post_buckling_path   path load_path                slopes gradients          over_designs evaluate_designs
 Effort SolverOptions       Given ComplianceMatrix      Positive SensorSense          Facing InstanceOrientation
@@ -27,8 +25,8 @@ Cut LoopBreak              Aim TuningObjective         Goal TuningSpec          
 PrefilterAt PrefilterSetup Motion AxisAmplitudes       Needs RecordRequirements      Known Prior               Allow FaultTolerance
 Tap InputSignal            Recorded InputQuantity      load_wanted load_optimisation Wanted OptimisationProblem
 """
-_WORDS = f"{_OPTIONS}{_KEYS}{_NAMES}".split()
-RENAMED = tuple(zip(_WORDS[::2], _WORDS[1::2], strict=True))
+_WORDS = iter(_TEXT.split())
+RENAMED = tuple(zip(_WORDS, _WORDS, strict=True))
 """Pairs of an old and a new name; an old name may have several, one a command or file."""
 
 
