@@ -209,20 +209,20 @@ def test_what_is_allowed_keeps_what_is_wanted(guide):
         'limits."stiffness.x" = "at least 4.5 N/mm"\n[scatter]\n'
         'wire = { address = "leaf.thickness", normal = "4 um" }\n'
         'hinge = { address = "leaf.thickness", normal = "8 um", independent = true }',
-        copies=300,
+        copies=600,
         sampling="monte carlo",
         wishes=', yield = "90 %"',
     )
     slope, results = slopes(study), told(study)
     found = allowance(study, results, slope, summary(study, results, slope))
-    error = 4.0 * np.sqrt(0.9 * 0.1 / 300)
+    error = 4.0 * np.sqrt(0.9 * 0.1 / 600)
     size = np.array([each.deviation for each in study.deviations])
     for factors in ((found.together,) * 2, (found.alone[0], 1.0), (1.0, found.alone[1]), tuple(found.equal)):
         assert 0.1 < min(factors) < 10.0
         reach = ndtri(0.9) * np.linalg.norm(slope.gradient[1] * size * np.array(factors)[list(study.owners)])
         assert reach == pytest.approx(found.margin[0], rel=1e-9)
         again = study.scale(tuple(float(each) for each in factors))
-        passed = piece(again, 0, 300).responses[:, 1] >= 4.5e3
+        passed = piece(again, 0, 600).responses[:, 1] >= 4.5e3
         assert passed.mean() == pytest.approx(0.9, abs=error + 0.02), factors
     assert found.then.share == pytest.approx(0.9, abs=error + 0.02)
 
