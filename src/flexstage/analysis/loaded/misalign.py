@@ -132,11 +132,6 @@ def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], 
     """What every copy (or link) that joins the ground bears, misaligned alone along or about `axes` of its own frame.
 
     Axes are rotations or translations, not both, as all have one `size` [rad, m]. Raises `DesignError` as `misalign` does.
-
-    >>> from flexstage.cases.parallelogram import parallelogram
-    >>> found = misalignments(parallelogram(), ("ry",))
-    >>> found.load.rows, found.worst.axis
-    (('B', 'left', 'right'), 'ry')
     """
     critical, followed = critical_misalignments(mechanism, axes)
     there = [[_at_size(_forced(mechanism, copy, axis), size) for axis in axes] for copy in critical.rows]

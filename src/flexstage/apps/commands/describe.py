@@ -93,7 +93,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Every finding is told with the object, the numbers and what to do. Exit code 2 if there is any.
 
-    Warnings and what is taken by default are told too; they stop nothing.
+    Also lists warnings and default values. Neither changes the exit code.
     """
     require_writable([("--json", json)], design)
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -48,7 +49,6 @@ from flexstage.solid.results.plan import Plan, reduction_plan, units_alone, veri
 from flexstage.solid.results.read import Solids, solids
 from flexstage.solid.results.resolution import NOT_ESTIMATED, Converged, Resolution
 from flexstage.solid.results.verified import Known, recall, retain
-from flexstage.solid.scope import Scope
 from flexstage.solid.show.tables import (
     block_table,
     calibration_table,
@@ -69,6 +69,15 @@ if TYPE_CHECKING:
     from flexstage.solid.show import sections as pages
 else:  # few are asked for a report
     page, reports, pages = Late("flexstage.show.page"), Late("flexstage.solid.show.report"), Late("flexstage.solid.show.sections")
+
+
+class Scope(Enum):
+    """Scope of a solid study: each distinct hinge, each distinct unit isolated, or the whole stage."""
+
+    HINGE = "hinge"
+    UNIT = "unit"
+    STAGE = "stage"
+
 
 Accuracy: TypeAlias = Annotated[
     str, typer.Option("--accuracy", metavar="SHARE", help="Relative error to reach in stiffness, gain and frequency.")

@@ -215,9 +215,9 @@ def continuation(
 ) -> LoadPath:
     """Arc-length continuation: equilibria along the factor on `load`, past limit points.
 
-    `step` is the length of a step in the motion of the bodies, over the flexures' length and in radians; `points` how many steps at most.
-    Coordinates in `hold` stay locked at their values. The path ends where no further equilibrium is found. After E. Riks (Int. J. Solids
-    Structures 15, 1979), steps normal to the first of each.
+    `step` is the longest step in the motion of the bodies, over the flexures' length and in radians; where the path turns steps are
+    shorter. The path is `points` times as long, and ends before where no further equilibrium is found. Coordinates in `hold` stay
+    locked at their values. After E. Riks (Int. J. Solids Structures 15, 1979), steps normal to the first of each.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
