@@ -10,7 +10,7 @@ from functools import wraps
 from inspect import Parameter, Signature, signature
 from itertools import chain, count
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias, get_origin, get_type_hints
+from typing import Annotated, Any, ParamSpec, get_origin, get_type_hints
 
 from rich.console import Console
 
@@ -53,10 +53,10 @@ class CommandResult:
 
 _OUTPUTS = {"json": Json, "csv": Csv, "xlsx": Xlsx, "report": Report}
 _KINDS: Mapping[Any, Any] = {Mechanism: DesignOptions}
-_Command: TypeAlias = Callable[..., CommandResult]
+_Given = ParamSpec("_Given")
 
 
-def command(*files: str) -> Callable[[_Command], Callable[..., None]]:
+def command(*files: str) -> Callable[[Callable[_Given, CommandResult]], Callable[_Given, None]]:
     """Make a command of a function that returns a `CommandResult`: documents where they are asked for, else tables.
 
     A parameter whose type is a dataclass stands for the options among its fields; a `Mechanism` is opened from its file. `files` name the
@@ -64,26 +64,29 @@ def command(*files: str) -> Callable[[_Command], Callable[..., None]]:
     Where one of them goes to stdout, tables do not, and warnings go to stderr.
     """
 
-    def decorate(function: _Command) -> Callable[..., None]:
+    def decorate(function: Callable[_Given, CommandResult]) -> Callable[_Given, None]:
         own = signature(function, eval_str=True).parameters
-        groups = {name: kind for name, each in own.items() if is_dataclass(kind := _KINDS.get(each.annotation, each.annotation))}
-        options = [option for name, each in own.items() for option in (_options(groups[name]) if name in groups else [each])]
-        known = {each.name for each in options}
+        kinds: dict[str, Any] = {name: _KINDS.get(each.annotation, each.annotation) for name, each in own.items()}
+        groups: dict[str, Any] = {name: kind for name, kind in kinds.items() if is_dataclass(kind)}
+        offered = [option for name, each in own.items() for option in (_options(groups[name]) if name in groups else [each])]
+        known = {each.name for each in offered}
         common = {name: kind for name, kind in _OUTPUTS.items() if name not in known and (name != "report" or name in files)}
-        options += [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind) for name, kind in common.items()]
+        offered += [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind) for name, kind in common.items()]
 
         @wraps(function)
-        def run(**given: Any) -> None:
+        def run(*_: _Given.args, **options: _Given.kwargs) -> None:
+            given: dict[str, Any] = {**options}
             outputs = {name: given[name] for name in ("json", "xlsx", *files)}
             read = [path for name, each in given.items() if name not in outputs and name != "csv" for path in _paths(each)]
             require_writable([(f"--{name}", target) for name, target in outputs.items()], read)
             made = {name: kind(**{each.name: given[each.name] for each in _options(kind)}) for name, kind in groups.items()}
             opened = {name: each.open() for name, each in made.items() if isinstance(each, DesignOptions)}
-            found = function(**{name: ({**made, **given} | opened)[name] for name in own})
+            called: Any = function
+            found = called(**{name: ({**made, **given} | opened)[name] for name in own})
             write_answer(function.__name__.replace("_", "-"), found, outputs, given["csv"])
 
-        run.__signature__ = Signature(options)  # pyright: ignore[reportFunctionMemberAccess]
-        run.__annotations__ = {each.name: each.annotation for each in options}
+        vars(run)["__signature__"] = Signature(offered)
+        run.__annotations__ = {each.name: each.annotation for each in offered}
         return run
 
     return decorate
