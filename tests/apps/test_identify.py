@@ -251,7 +251,7 @@ def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Rec
         (("record.uff", "--stage", "nowhere.toml"), "nowhere.toml"),
         (("record.uff", "--report", "record.uff"), "a record that is read"),
         (("record.uff", "--report", "no/folder.html"), "cannot be written"),
-        (("record.uff", "--stage", "stage.toml", "--report", "stage.toml"), "the design file"),
+        (("record.uff", "--stage", "stage.toml", "--report", "stage.toml"), "read by this command"),
         (("record.uff", "--json", "-", "--report", "-"), "stdout"),
     ],
 )

@@ -29,9 +29,9 @@ from tests.apps.command import Command, design_in
 BAD_TARGETS = {
     ("--report", "nowhere/report.html"): "no folder nowhere",
     ("--json", "folder"): "it is a folder",
-    ("--mat", "stage.toml"): "the design file",
-    ("--report", "stage.toml"): "the design file",
-    ("--xlsx", "stage.toml"): "the design file",
+    ("--mat", "stage.toml"): "read by this command",
+    ("--report", "stage.toml"): "read by this command",
+    ("--xlsx", "stage.toml"): "read by this command",
 }
 
 

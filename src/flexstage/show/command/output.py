@@ -80,7 +80,7 @@ def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iter
 
 
 def _problems(wanted: Iterable[tuple[str, str | Path | None]], read: Iterable[Path]) -> Iterator[Finding]:
-    taken = {_real_path(path): "read" for path in read}
+    taken = {_real_path(path): "read by this command" for path in read}
     spoken: str | None = None
     for option, target in wanted:
         if target is not None and str(target) == STDOUT:
@@ -91,11 +91,11 @@ def _problems(wanted: Iterable[tuple[str, str | Path | None]], read: Iterable[Pa
             continue
         path = Path(target)
         if (owner := taken.get(_real_path(path))) is not None:
-            yield Finding(option, f"{path} is {owner} too", "Choose another file")
+            yield Finding(option, f"{path} is {owner}", "Choose another file")
         elif (problem := _problem(path, _file_problem)) is not None:
             yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
         else:
-            taken[_real_path(path)] = f"the output of {option}"
+            taken[_real_path(path)] = f"the output of {option} too"
 
 
 def check_folder(folder: Path | None) -> Path | None:
