@@ -307,7 +307,7 @@ def test_a_report_shows_what_was_set_and_what_that_did(flexstage: Command, tmp_p
     flexstage("analyse", "stage.toml", "--report", "plain.html")
     changed, plain = ((tmp_path / name).read_text() for name in ("set.html", "plain.html"))
     section = changed.partition('<section id="changes">')[2].partition("</section>")[0]
-    for text in ("parts.neck.thickness", "2 mm", "1.4 mm", "What the change does", "frequency.platform.1", "old", "new", "change"):
+    for text in ("parts.neck.thickness", "2 mm", "1.4 mm", "Changes of key figures", "frequency.platform.1", "old", "new", "change"):
         assert text in section, text
     assert '<section id="changes">' not in plain
 
