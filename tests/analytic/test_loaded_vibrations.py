@@ -90,7 +90,7 @@ def test_a_soft_rod_vibrates_alike_from_either_end():
     assert found[1] == pytest.approx(found[0], rel=1e-7)
 
 
-@pytest.mark.parametrize("swap", [False, True])
+@pytest.mark.parametrize("swap", [False, pytest.param(True, marks=pytest.mark.full)])
 def test_small_motions_are_the_slopes_of_large_ones(swap: bool):
     """Compliance about a loaded state with weight, by two more equilibria."""
     model = nonlinear(guide(swap=swap, gravity=(400.0, 600.0, -100.0), mass=5e-3, centre=AWAY), resolution=FINE)

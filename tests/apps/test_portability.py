@@ -64,6 +64,7 @@ sweep = { sampling = "sobol", designs = 4 }
 """
 
 
+@pytest.mark.full
 def test_the_main_commands_need_nothing_of_posix(tmp_path: Path) -> None:
     """Their workers neither: what is hidden here is hidden there, before anything else is imported."""
     design_in(tmp_path, "parallelogram")

@@ -118,7 +118,7 @@ def factors(model: Nonlinear, sizes: np.ndarray) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 4, *(pytest.param(each, marks=pytest.mark.full) for each in (3, *range(5, 200)))])
+@pytest.mark.parametrize("seed", [1, 4, *(pytest.param(each, marks=pytest.mark.full) for each in (0, 2, 3, *range(5, 200)))])
 def test_the_critical_load_is_the_first_event_of_small_steps_whatever_the_size_of_the_load(seed: int):
     model = nonlinear(random_legs(seed))
     found = np.array(factors(model, np.geomspace(1e-3, 1e3, 20 if seed > 4 else 3)))

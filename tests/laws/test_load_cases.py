@@ -37,6 +37,7 @@ def test_where_the_free_stage_gives_way_its_stiffness_against_the_drive_vanishes
     assert slope(1.0 - 2e-3) > 0.0 > slope(1.0 + 2e-3)
 
 
+@pytest.mark.full
 def test_a_locked_drive_bears_more_than_a_free_one_and_none_at_rest_is_as_asked_alone(model: Nonlinear) -> None:
     """A constraint more never takes stability; the case at rest is that of the weight alone, an imperfect bifurcation."""
     free, locked = (case_critical(model, each).factor for each in (AWAY, replace(AWAY, locked=("platform.x",))))

@@ -150,7 +150,7 @@ def test_the_frame_does_not_matter():
     assert spatial_rotation(turn).T @ there == pytest.approx(here, abs=1e-13)
 
 
-@pytest.mark.parametrize("swap", [False, True])
+@pytest.mark.parametrize("swap", [False, pytest.param(True, marks=pytest.mark.full)])
 def test_tangents_are_the_slopes_of_reactions(swap: bool):
     model = nonlinear(guide(swap=swap, gravity=(40.0, -90.0, 30.0), mass=0.1, centre=AWAY))
     held = {f"platform.{name}": value for name, value in zip(("x", "y", "z"), (-1e-3, 0.02, 4e-5), strict=True)}
@@ -208,7 +208,7 @@ def test_asymmetry_falls_with_points():
     assert coarse > 10.0 * middle > 100.0 * fine
 
 
-@pytest.mark.parametrize(("resolution", "most"), [(Resolution(), 2e-6), (FINE, 5e-8)])
+@pytest.mark.parametrize(("resolution", "most"), [(Resolution(), 2e-6), pytest.param(FINE, 5e-8, marks=pytest.mark.full)])
 def test_energy_is_the_work_of_forces(resolution: Resolution, most: float):
     model = nonlinear(guide(), resolution=resolution)
     nodes, weights = np.polynomial.legendre.leggauss(12)
@@ -289,10 +289,10 @@ RANDOM = np.random.default_rng(3).uniform(-1.0, 1.0, (11, 6)) * [5.0, 15.0, 3.0,
 @pytest.mark.parametrize(
     ("stage", "given", "held"),
     [
-        (guide(swap=True), loads(RANDOM), {}),
-        (guide(gravity=(400.0, 600.0, -100.0), mass=1e-4), loads(RANDOM), {}),
+        pytest.param(guide(swap=True), loads(RANDOM), {}, marks=pytest.mark.full),
+        (guide(gravity=(400.0, 600.0, -100.0), mass=1e-4), loads(RANDOM[:3]), {}),
         (guide(gravity=(4.0, -9.0, 3.0)), {}, {"platform.y": np.linspace(0.0, 0.02, 5), "platform.rx": 0.02}),
-        (replace(guide(), parts={"leaf": replace(LEAF, curvature=2.0)}), loads(RANDOM), {}),
+        (replace(guide(), parts={"leaf": replace(LEAF, curvature=2.0)}), loads(RANDOM[:3]), {}),
         (parallelogram(), {"B": [1e-5, 2e-5]}, {}),
         (double_triangle(), {"B1": [1e-5, -1e-5]}, {}),
     ],

@@ -96,7 +96,7 @@ def ends(models: int, each: int, share: float) -> None:
 
 
 def test_every_search_ends_in_an_equilibrium_or_says_why_not():
-    ends(5, 10, 0.9)
+    ends(4, 6, 0.9)
 
 
 @pytest.mark.full

@@ -45,6 +45,7 @@ def notch(radius: float, thickness: float, width: float) -> Notch:
     return Notch("al", thickness * MM, width * MM, Circular(radius * MM))
 
 
+@pytest.mark.full
 def test_no_error_is_estimated_from_elements_that_lock() -> None:
     """At order two, which is within 4 % of order three; order one is several times too stiff."""
     stage = arm(leaf(10.0, 0.5, 5.0))
