@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.parts.part import Restricted
 
