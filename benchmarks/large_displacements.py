@@ -34,7 +34,7 @@ from flexstage.base.processes.native import SWITCH
 from flexstage.beams.flexure.law import leaf_law
 from flexstage.beams.flexure.strip import fields
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.cases.voice_coil_stage import voice_coil_stage
+from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.design import design
 from flexstage.models.nonlinear.compiled import kernel
@@ -149,7 +149,7 @@ def tables() -> object:
 
 
 def stroke() -> object:
-    return fs.stroke(fs.load_path(fs.nonlinear(voice_coil_stage()), "platform.x", np.linspace(-1e-3, 1e-3, 41)))
+    return fs.stroke(fs.load_path(fs.nonlinear(case("voice-coil-stage")), "platform.x", np.linspace(-1e-3, 1e-3, 41)))
 
 
 def designs() -> fs.Mechanism:

@@ -14,8 +14,7 @@ from threadpoolctl import threadpool_limits
 
 import flexstage as fs
 from flexstage.analysis.assessment.judge import judge
-from flexstage.cases.case import Case, Shipped
-from flexstage.cases.file_case import file_text
+from flexstage.cases.case import Case, FunctionCase, file_text
 from flexstage.cases.registry import CASES, case
 from flexstage.models.theory import Model
 from flexstage.show.command.design import elastic_model
@@ -41,7 +40,7 @@ def page() -> str:
     return "\n\n".join(["# Gallery", _INTRODUCTION, *(part for name in SHOWN for part in _parts(name, CASES[name])), _MADE]) + "\n"
 
 
-def _parts(name: str, found: Shipped) -> Iterator[str]:
+def _parts(name: str, found: Case) -> Iterator[str]:
     yield f"## {name}"
     yield f"{found.summary[0].upper()}{found.summary[1:]}."
     yield f"![{found.summary}](pictures/case-{name}.png)"
@@ -52,15 +51,15 @@ def _parts(name: str, found: Shipped) -> Iterator[str]:
     yield f"Drawn in [{_source(name, found).name}](../{_source(name, found).as_posix()}){more}."
 
 
-def _source(name: str, found: Shipped) -> Path:
-    if isinstance(found, Case):
+def _source(name: str, found: Case) -> Path:
+    if isinstance(found, FunctionCase):
         return Path("src", *found.function.__module__.split(".")).with_suffix(".py")
     return Path("src/flexstage/cases/files", f"{name}.toml")
 
 
-def _words(name: str, found: Shipped) -> str:
+def _words(name: str, found: Case) -> str:
     """What the case says of itself, but its first line where that only names it."""
-    if isinstance(found, Case):
+    if isinstance(found, FunctionCase):
         return (inspect.getdoc(inspect.getmodule(found.function)) or "").partition("\n\n")[2].replace("\n", " ")
     lines = file_text(name).partition("\nformat")[0].splitlines()
     return " ".join(re.sub(r"^# ?", "", line) for line in lines)

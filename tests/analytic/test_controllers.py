@@ -10,7 +10,7 @@ import pytest
 from flexstage.analysis.dynamics.modes import modes
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.cases.xy_stage import xy_stage
+from flexstage.cases.registry import case
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import actuator_loops, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
@@ -142,7 +142,7 @@ def test_modal_loops_decouple_a_stage_of_massless_units():
 
 def test_loops_of_a_stage_are_in_metres_and_of_gain_one():
     """By the ideal stage, sense (R_a^-1 drive) is the unit matrix in all coordinates, for two motions as for six."""
-    for stage in (double_triangle(), xy_stage()):
+    for stage in (double_triangle(), case("xy-stage")):
         given = coordinates(ideal(stage))
         shapes = np.random.default_rng(1).normal(size=(6, len(given.names)))
         for loops in (actuator_loops(given), platform_loops(given), modal_loops(given, shapes)):
@@ -151,7 +151,7 @@ def test_loops_of_a_stage_are_in_metres_and_of_gain_one():
 
 def test_the_loops_add_up_to_the_controller():
     """C(s) = drive diag(C_i N_i) sense, and the fed-forward strokes beside it."""
-    given = coordinates(ideal(xy_stage()))
+    given = coordinates(ideal(case("xy-stage")))
     loops = modal_loops(given, np.random.default_rng(2).normal(size=(6, 2)))
     laws, notches = (PI(0.2, 100.0), PID(0.1, 50.0, 1e-4, 800.0)), ((Notch(200.0),), ())
     ahead = np.array([[1.1, 0.2], [0.0, 0.9]])
@@ -168,7 +168,7 @@ def test_the_loops_add_up_to_the_controller():
 @pytest.fixture(scope="module")
 def stage_plants():
     """The shipped two-axis stage, continuous and sampled with a delay and lags."""
-    stage = xy_stage()
+    stage = case("xy-stage")
     model, kinematics = lumped(stage), ideal(stage)
     return [plant(model, kinematics, given, modes=5) for given in (Hardware(), Hardware(rate=5e3, delay=130e-6))]
 
@@ -238,10 +238,10 @@ BAD = {
     "not above the plant's static gain 1": lambda: resonant_damping(100.0, 0.9),
     "its feed-through is -2": lambda: IntegralResonant(100.0, -2.0),
     "its damping is 0": lambda: resonant_law(100.0, 0.0),
-    "1 laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(xy_stage()))), (PI(),)),
-    "are (1, 1), where": lambda: Decentralised(platform_loops(coordinates(ideal(xy_stage()))), (PI(), PI()), (), np.eye(1)),
-    "3 modes are given for 2 coordinates (x, y)": lambda: modal_loops(coordinates(ideal(xy_stage())), np.eye(6)[:, :3]),
-    "not independent": lambda: modal_loops(coordinates(ideal(xy_stage())), np.ones((6, 2))),
+    "1 laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(),)),
+    "are (1, 1), where": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(), PI()), (), np.eye(1)),
+    "3 modes are given for 2 coordinates (x, y)": lambda: modal_loops(coordinates(ideal(case("xy-stage"))), np.eye(6)[:, :3]),
+    "not independent": lambda: modal_loops(coordinates(ideal(case("xy-stage"))), np.ones((6, 2))),
 }
 
 

@@ -165,14 +165,18 @@ def test_two_cubes_turned_by_an_eighth_share_an_octagon() -> None:
 
 
 def _thrown(seed: int) -> list[Block]:
+    """Blocks that are parallel to one another, along any of their edges."""
     chance = np.random.default_rng([seed, 11])
     solids: list[Block] = []
+    along = tuple(float(each) for each in chance.normal(size=3))
+    up = tuple(float(each) for each in np.cross(along, chance.normal(size=3)))
+    edges = (along, up, tuple(float(each) for each in np.cross(along, up)))
     for _ in range(4):
         x, y, z = (float(each) for each in chance.uniform(0.01, 0.03, size=3))
-        at, along = (tuple(float(each) for each in row) for row in (chance.uniform(-0.01, 0.01, size=3), chance.normal(size=3)))
-        up = tuple(float(each) for each in np.cross(along, chance.normal(size=3)))
+        at = tuple(float(each) for each in chance.uniform(-0.01, 0.01, size=3))
         hole = (0.5 * x, 0.6 * y) if chance.random() < 0.4 else None
-        solids.append(Block("steel", (x, y, z), at, hole, along, up))  # type: ignore[arg-type]
+        first, second = chance.choice(3, size=2, replace=False)
+        solids.append(Block("steel", (x, y, z), at, hole, edges[first], edges[second]))  # type: ignore[arg-type]
     return solids
 
 
@@ -242,11 +246,11 @@ def test_half_a_disc_has_its_closed_form() -> None:
     assert np.isclose(found.mass * found.centre[0] - wide.mass * wide.centre[0], half * 0.04 / (3.0 * np.pi), rtol=1e-11)
 
 
-def _tilted(x: Any) -> Block:
-    return Block("steel", (0.02, 0.005, 0.003), (x, 0.001, 0.002), along=(1.0, 0.2, 0.1), up=(-0.1, 0.0, 1.0))
+def _turned(x: Any) -> Block:
+    return Block("steel", (0.02, 0.005, 0.003), (x, 0.001, 0.002), along=(1.0, 0.2, 0.0))
 
 
-@pytest.mark.parametrize("second", [_tilted(0.01), Cylinder("steel", 0.02, 0.01, (0.015, 0.0, 0.0))], ids=["tilted block", "cut disc"])
+@pytest.mark.parametrize("second", [_turned(0.01), Cylinder("steel", 0.02, 0.01, (0.015, 0.0, 0.0))], ids=["turned block", "cut disc"])
 def test_the_inertia_of_a_union_does_not_depend_on_where_it_stands(second: Block | Cylinder) -> None:
     """What is shared has its middle beside the mean of its corners; it is taken off about its own centre all the same."""
     solids = (block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005)), second)
@@ -260,7 +264,7 @@ def test_the_inertia_of_a_union_does_not_depend_on_where_it_stands(second: Block
 
 def test_derivatives_pass_through_the_union() -> None:
     def mass_at(x: Any) -> MassProperties:
-        return weighed(block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005)), _tilted(x))
+        return weighed(block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005)), _turned(x))
 
     step, at = 1e-6, 0.01
     exact, low, high = mass_at(at + 1e-30j), mass_at(at - step), mass_at(at + step)
@@ -287,12 +291,12 @@ _PLACES = np.array([0.0, 0.004, 0.009, 0.014, 0.02, 0.024, 0.03, 0.0041, 0.0201,
 @pytest.mark.parametrize(
     "drawn",
     [
-        lambda x: [_tilted(x)],
+        lambda x: [_turned(x)],
         lambda x: [Cylinder("steel", 0.02, 0.01, (x, 0.0, 0.0))],
         lambda x: [Cylinder("steel", 0.02, 0.01, (0.006, x, 0.0)), Cylinder("steel", 0.015, 0.03, (x, 0.002, 0.003), bore=0.004)],
         lambda x: [Extrusion("steel", ((-0.005, -0.005), (0.005, -0.005), (0.005, 0.005), (0.0, 0.008 - 0.4 * x), (-0.005, 0.005)), 0.02)],
     ],
-    ids=["tilted block", "disc", "two discs, one of them bored", "polygon that is notched or roofed"],
+    ids=["turned block", "disc", "two discs, one of them bored", "polygon that is notched or roofed"],
 )
 def test_a_batch_weighs_as_its_designs_do(drawn: Callable[[Any], list[Solid]]) -> None:
     base = block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005))
@@ -307,22 +311,34 @@ def test_a_batch_weighs_as_its_designs_do(drawn: Callable[[Any], list[Solid]]) -
 
 
 @pytest.mark.parametrize(
-    ("solids", "volume", "exact"),
+    "solids",
     [
-        ((block((-0.02, -0.005, -0.005), (0.02, 0.005, 0.005)), Cylinder("steel", 0.012, 0.03, along=(0.2, 0.0, 1.0))), None, False),
-        ((Cylinder("steel", 0.01, 0.04), Cylinder("steel", 0.01, 0.04, along=(1.0, 0.0, 0.0))), 16.0 / 3.0 * 125.0, False),
-        ((UNIT, replace(UNIT, material="lead", size=(0.004, 0.004, 0.004))), 64.0, True),
+        (block((-0.02, -0.005, -0.005), (0.02, 0.005, 0.005)), Cylinder("steel", 0.012, 0.03, along=(0.2, 0.0, 1.0))),
+        (Cylinder("steel", 0.01, 0.04), Cylinder("steel", 0.01, 0.04, along=(1.0, 0.0, 0.0))),
+        (UNIT, Block("steel", (0.02, 0.006, 0.007), (0.009, 0.006, 0.004), along=(1.0, 0.3, -0.2), up=(0.2, 0.0, 1.0))),
+        (PLATE, Sphere("steel", 0.006, (0.019, 0.0, 0.009))),
+        (Sphere("steel", 0.006), Sphere("steel", 0.006, (0.004, 0.0, 0.0))),
+        (UNIT, replace(UNIT, material="lead", size=(0.004, 0.004, 0.004))),
     ],
+    ids=["tilted rod", "crossed rods", "tilted block", "ball over an edge", "two balls", "lead in steel"],
 )
-def test_what_cannot_be_weighed_is_refused_with_its_volume(solids: tuple[Solid, ...], volume: float | None, *, exact: bool) -> None:
+def test_what_cannot_be_weighed_is_refused(solids: tuple[Solid, ...]) -> None:
     with pytest.raises(DesignError) as told:
         weighed(*solids)
     (finding,) = told.value.findings
     assert "s1" in finding.what
     assert "state the body's mass" in finding.advice
-    if volume is not None:
-        said = float(finding.what.split(" mm^3")[0].split()[-1])
-        assert np.isclose(said, volume, rtol=1e-3 if exact else 5e-3)
+    if solids[1].material == "lead":
+        assert np.isclose(float(finding.what.split(" mm^3")[0].split()[-1]), 64.0, rtol=1e-3)
+
+
+def test_a_batch_is_refused_for_the_one_design_that_overlaps() -> None:
+    """Beside the block in the first design, aslant through its corner in the second."""
+    rod = Cylinder("steel", 0.002, 0.03, (np.array([0.03, 0.009]), 0.009, 0.0), along=(0.2, 0.0, 1.0))
+    with pytest.raises(DesignError, match="overlaps s1"):
+        weighed(UNIT, rod)
+    beside = replace(rod, at=(0.0135, 0.0135, 0.005))  # their boxes meet, they do not
+    assert np.isclose(weighed(UNIT, beside).mass, DENSITY * (1e-6 + np.pi * 1e-6 * 0.03))
 
 
 def test_outlines_that_only_touch_or_pass_each_other_are_let_be() -> None:
@@ -393,7 +409,7 @@ def test_a_mirrored_body_is_the_image_of_what_is_drawn() -> None:
 
 
 CROSSING = {
-    "blocks": (UNIT, Block("steel", (0.02, 0.006, 0.007), (0.009, 0.006, 0.004), along=(1.0, 0.3, -0.2))),
+    "blocks": (UNIT, Block("steel", (0.02, 0.006, 0.007), (0.009, 0.006, 0.004), along=(1.0, 0.3, 0.0))),
     "blocks, one with a hole": (replace(UNIT, size=(0.02, 0.012, 0.01), hole=(0.008, 0.006)), Block("steel", (0.02, 0.006, 0.007))),
     "a disc in a plate": (UNIT, Cylinder("steel", diameter=0.012, length=0.01, at=(0.002, 0.003, 0.008))),
     "tubes side by side": (
@@ -436,4 +452,4 @@ def test_what_moves_as_one_changes_as_its_motion_says(name: str) -> None:
         for kind, power in (("volume", 2), ("first", 3), ("second", 4)):
             difference = np.imag(getattr(then, kind)) / step - getattr(wanted, kind)
             assert np.max(np.abs(difference)) <= 100.0 * ROUND_OFF * size**power
-            assert np.allclose(np.real(getattr(then, kind)), getattr(now, kind), rtol=0.0, atol=0.0)
+            assert np.allclose(np.real(getattr(then, kind)), getattr(now, kind), rtol=0.0, atol=ROUND_OFF * size ** (power + 1))

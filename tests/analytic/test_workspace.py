@@ -247,9 +247,9 @@ def test_stacks_are_pulled_below_no_voltage():
 
 def test_a_point_turns_about_itself():
     """Tilting about a point 0.1 m above the reference: R_a there is R_a X^-1."""
-    from flexstage.cases.hexapod import hexapod
+    from flexstage.cases.registry import case
 
-    stage = hexapod()
+    stage = case("hexapod")
     kinematics = ideal(stage)
     at = mapping_at(stage, kinematics, "sample")
     height = stage.bodies["platform"].points["sample"][2] - 0.014

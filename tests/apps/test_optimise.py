@@ -50,7 +50,7 @@ def test_the_file_written_keeps_what_was_told(study_file, tmp_path, flexstage):
 
 def test_a_case_is_written_as_a_new_file(study_file, tmp_path, flexstage):
     text = study_file.read_text().replace('design = "guide.toml"', 'case = "parallelogram"')
-    study_file.write_text(text.replace('address = "parts.leaf.thickness"', 'parameter = "leaf.thickness"'))
+    study_file.write_text(text.replace('address = "parts.leaf.thickness"', 'parameter = "leaf_thickness"'))
     assert flexstage("optimise", "study.toml", "-o", "better.toml").code == 0
     assert load(tmp_path / "better.toml").parts["leaf"].thickness == 0.0016
 

@@ -18,7 +18,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.processes.progress import Step
-from flexstage.cases.bridge import bridge
+from flexstage.cases.registry import case
 from flexstage.mechanism.restrict import restrict
 from flexstage.parts.freedom import Freedom
 from flexstage.show.command.progress import progress_bar
@@ -151,7 +151,7 @@ def test_what_has_no_shape_is_named(command: Command, tmp_path: Path) -> None:
 
 
 def test_a_stage_without_units_of_its_own(command: Command, tmp_path: Path) -> None:
-    fs.dump(bridge(), tmp_path / "bridge.toml")
+    fs.dump(case("bridge"), tmp_path / "bridge.toml")
     ended = command("solid", "bridge.toml", "--scope", "unit", "--json", "out.json")
     assert ended.code == 2
     assert "none of the stage's units drives an output" in ended.err

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.cases.xy_stage import xy_stage
+from flexstage.cases.registry import case
 from flexstage.control.controllers.decentralised import Decentralised, loop_systems
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
@@ -48,7 +48,7 @@ def test_linear_quadratic_gains_are_the_peer_s(given):
     """Regulator with integrators and observer, continuous and sampled, of the shipped two-axis stage with four modes."""
     import control as peer
 
-    stage = xy_stage()
+    stage = case("xy-stage")
     one = plant(lumped(stage), ideal(stage), given, modes=4)
     model = pose_plant(one)
     found = lqg(model, one.coordinates, Weights(30.0, 0.2), Disturbances(2e-9, dict.fromkeys(one.gauges, 1e-11)))

@@ -12,7 +12,6 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
-from flexstage.cases.tip_tilt import tip_tilt
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.example import integral, integral_loop
 from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, sampling_chain
@@ -40,8 +39,8 @@ from flexstage.models.lumped import lumped
 CLOSE, ZERO = 1e-9, 1e-12
 
 
-def _loop(rate: float | None, gain: float, case=parallelogram, modes: int = 2) -> Loop:
-    stage = case()
+def _loop(rate: float | None, gain: float, name: str = "parallelogram", modes: int = 2) -> Loop:
+    stage = case(name)
     delay = 60e-6 if rate else 0.0
     given = sampling_chain(
         stage, rate=rate, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0), gauges=GaugeSettings(bandwidth=np.inf)
@@ -63,7 +62,7 @@ def _like(system: System, response):
 
 @pytest.mark.parametrize("rate", [8e3, None])
 def test_responses(rate):
-    closed = _loop(rate, 100.0, tip_tilt, 6)
+    closed = _loop(rate, 100.0, "tip-tilt", 6)
     for ours in (closed.system, open_at(closed, LoopBreak.POSE), closed.plant.system):
         theirs, at = to_control(ours), np.geomspace(0.5, 3500.0, 200)
         found = np.moveaxis(np.asarray(theirs.frequency_response(2.0 * np.pi * at).frdata), -1, 0)
@@ -79,7 +78,7 @@ def test_closed_by_feedback(rate, gain):
     """The closed loop of python-control's `feedback` around our open loop is ours."""
     import control
 
-    closed = _loop(rate, gain, tip_tilt, 6)
+    closed = _loop(rate, gain, "tip-tilt", 6)
     open_loop = to_control(open_at(closed, LoopBreak.POSE))
     at = np.geomspace(0.5, 3500.0, 100)
     found = control.feedback(open_loop, control.ss([], [], [], np.eye(3), open_loop.dt))

@@ -91,7 +91,7 @@ def test_contracts_bite(tmp_path: Path) -> None:
 
 
 def test_contracts_bite_through_others(tmp_path: Path) -> None:
-    chain = [("solid/fea/jobs/install.py", "flexstage.cases.stock"), ("cases/stock.py", "flexstage.beams.leaf")]
+    chain = [("solid/fea/jobs/install.py", "flexstage.cases.case"), ("cases/case.py", "flexstage.beams.leaf")]
     done = lint(planted(tmp_path, chain))
     assert "Finite elements reach neither beam theory nor its models BROKEN" in done.stdout
     assert "Imports go down the floors only KEPT" in done.stdout

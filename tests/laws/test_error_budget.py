@@ -13,7 +13,6 @@ from flexstage.analysis.assessment.error_budget import SOURCES, command_strokes,
 from flexstage.analysis.linear_statics.drift import drift
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace.gauging import pose_resolution
-from flexstage.cases.hexapod import hexapod
 from flexstage.cases.registry import case
 from flexstage.models.finite import forward_kinematics
 from flexstage.models.linear.static import static_gain
@@ -114,7 +113,7 @@ def test_commands_scale_the_static_sources():
 
 def test_a_point_above_feels_the_tilts():
     """At a point h above the reference x errs by what tilting about y adds: within |ex| + h |ery|, source by source."""
-    stage = noisy(hexapod())
+    stage = noisy(case("hexapod"))
     here = budget(stage, {"x": 5e-6, "ry": 50e-6}).ideal.values
     there = budget(stage, {"x": 5e-6, "ry": 50e-6}, at="sample").ideal.values
     arm = stage.bodies["platform"].points["sample"][2] - 0.014
@@ -127,19 +126,15 @@ def test_what_cannot_be_commanded_is_named():
     with pytest.raises(fs.DesignError, match=r"command w: the stage's ideal motions are x"):
         budget(case("double-triangle"), {"w": 1e-6})
     with pytest.raises(fs.DesignError, match="nearest name is sample"):
-        budget(hexapod(), {"x": 1e-6}, at="sampl")
+        budget(case("hexapod"), {"x": 1e-6}, at="sampl")
 
 
 def test_a_batch_is_the_loop():
     """Two designs at once, each as alone; a command of two coordinates has as many corners as designs times two."""
-    import dataclasses
-
-    from flexstage.cases.hexapod import Hexapod
-
     lengths = np.array([0.05, 0.06])
-    together = budget(noisy(hexapod(dataclasses.replace(Hexapod(), head_radius=lengths))), {"x": 5e-6}, temperature=0.1)
+    together = budget(noisy(case("hexapod", {"head_radius": lengths})), {"x": 5e-6}, temperature=0.1)
     for index, radius in enumerate(lengths):
-        alone = budget(noisy(hexapod(dataclasses.replace(Hexapod(), head_radius=float(radius)))), {"x": 5e-6}, temperature=0.1)
+        alone = budget(noisy(case("hexapod", {"head_radius": float(radius)})), {"x": 5e-6}, temperature=0.1)
         np.testing.assert_allclose(together.ideal.values[index], alone.ideal.values, rtol=1e-6, atol=1e-14)
         np.testing.assert_allclose(together.sums.values[index], alone.sums.values, rtol=1e-6, atol=1e-14)
 

@@ -19,7 +19,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.sparse import Rows, Sparse
 from flexstage.beams.compliance import law
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.cases.telescope_mount import telescope_mount
+from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.models import ideal as ideals
 from flexstage.models import lumped as lumpeds
@@ -289,7 +289,7 @@ def test_a_part_that_hangs_on_nothing_is_found():
 @pytest.mark.full
 def test_load_factors_without_zeros_are_found_where_few_eigenvalues_are_apart():
     """Of a stage in which two motions soften and all others are next to zero, Lanczos' method returns those that converge."""
-    stage = telescope_mount()
+    stage = case("telescope-mount")
     dense = stabilities.stability(stage, lumped(stage)).dead
     with patch.object(stabilities, "LARGE", 0), patch.object(stabilities, "_pieces", stabilities._pieces.__wrapped__):
         sparse = stabilities.stability.__wrapped__(stage, lumped(stage)).dead

@@ -13,7 +13,7 @@ from flexstage.analysis.dynamics.random_response import Rate, Spectrum, quadratu
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.cases.xy_stage import xy_stage
+from flexstage.cases.registry import case
 from flexstage.control.example import integral, integral_loop
 from flexstage.control.noise import DisturbanceResponse, noise_budget
 from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Sensor, sampling_chain
@@ -197,7 +197,7 @@ def _by_states(closed, column, process):
 
 
 def _two_axes():
-    stage = xy_stage()
+    stage = case("xy-stage")
     given = sampling_chain(stage, rate=10e3, delay=80e-6, amplifiers=AmplifierSettings(bandwidth=2000.0, noise_density=2e-4, bits=10))
     one = plant(lumped(stage), ideal(stage), given, modes=3)
     return loop(one, integral(one, 200.0))

@@ -12,10 +12,9 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.dynamics.modes import modal_assurance
 from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, pair_modes
 from flexstage.base.number import Array
-from flexstage.cases.bridge import bridge
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.cases.hexapod import hexapod
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.registry import case
 from flexstage.models.linear.model import Channel, Contribution, LinearModel
 
 SEEN = ("platform.x", "platform.y", "platform.z", "platform.rx", "platform.ry", "platform.rz")
@@ -27,7 +26,7 @@ def of(stage: fs.Mechanism) -> Moving:
     return Moving(platform_modes(stage, model), model)
 
 
-@pytest.mark.parametrize("stage", [bridge(), double_triangle(), hexapod(), parallelogram()], ids=lambda stage: stage.name)
+@pytest.mark.parametrize("stage", [case("bridge"), double_triangle(), case("hexapod"), parallelogram()], ids=lambda stage: stage.name)
 def test_a_model_pairs_with_itself(stage: fs.Mechanism) -> None:
     own = of(stage)
     found = pair_modes(own, own)

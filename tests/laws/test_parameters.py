@@ -124,7 +124,7 @@ def test_bad_parameters_of_cases_are_told_all_at_once():
     with pytest.raises(DesignError, match="solid, massless"):
         fs.case("double-triangle", {"bodies": "air"})
     with pytest.raises(DesignError, match="the same parameter"):
-        fs.case("parallelogram", {"neck.radius": 0.004, "neck.profile.radius": 0.005})
+        fs.case("double-triangle", {"pole_neck.radius": 0.004, "pole_neck.profile.radius": 0.005})
 
 
 def test_many_designs_are_drawn_from_parameters_with_derivatives():

@@ -14,7 +14,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import first_design
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.cases.tip_tilt import tip_tilt
+from flexstage.cases.registry import case
 from flexstage.control.controllers.decentralised import Decentralised, loop_systems
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.notch import Notch
@@ -289,7 +289,7 @@ def test_a_balance_settles_on_a_stage_that_no_floor_shakes():
     floor = VibrationSetup(criterion=Criterion.VC_D)
     plain = LoopSetup(floor=Floor(floor, floor, floor))
     searched = replace(plain, controller=ControllerSetup(goal=GoalSetup()))
-    slowest = [max(run.step.settling for run in loop_study(tip_tilt(), each).runs if run.step) for each in (searched, plain)]
+    slowest = [max(run.step.settling for run in loop_study(case("tip-tilt"), each).runs if run.step) for each in (searched, plain)]
     assert slowest[0] < slowest[1]
 
 

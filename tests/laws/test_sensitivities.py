@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
-from flexstage.cases.tip_tilt import tip_tilt
+from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import addresses, get, set_value
 from flexstage.models.linear.static import static_gain
 from flexstage.show.tables.sensitivities import loss_sensitivity_table
@@ -144,7 +144,7 @@ def test_numbers_that_are_not_stated_have_no_sensitivity() -> None:
 
 def test_without_enough_actuators_the_frequencies_are_still_given() -> None:
     """Two of three posts of the tip-tilt mount: frequencies as before, against finite differences; no gains, and the reason."""
-    stage = tip_tilt()
+    stage = case("tip-tilt")
     place = {("P1-P2" if name == "P1-P3" else name): placement for name, placement in stage.placements.items()}
     stage = replace(stage, placements=place, requirements={})
     address = "parts.leaf.thickness"

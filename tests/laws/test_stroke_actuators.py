@@ -14,7 +14,7 @@ from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace.blocking import stack_lines
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.units.scale import X, Z, mm
-from flexstage.cases.bridge import bridge
+from flexstage.cases.registry import case
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.incidence import deformation, layout
 from flexstage.mechanism.checks import check
@@ -136,7 +136,7 @@ TURNED_MATRIX = tuple(map(tuple, TURNED.between.tolist()))
 
 def test_a_stage_inside_another_one_gives_what_it_gives_itself():
     """The bridge as a part on a spring of links: compliance, motion and force at the platform to rounding."""
-    inner = bridge()
+    inner = case("bridge")
     part = amplified(inner)
     centre = tuple(expand(inner).bodies[PLATFORM].reference.tolist())
     outer = Mechanism(

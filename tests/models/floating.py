@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cache
 
 from flexstage.base.units.scale import X, Y, Z, deg, mm, um
-from flexstage.cases.stock import ALUMINIUM, GAUGE, STEEL
 from flexstage.mechanism.assembly.pattern import InstanceOrientation, Polar, Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Probe, Unit
 from flexstage.parts.body import Block, Body, Inertia, Payload
@@ -16,6 +15,7 @@ from flexstage.parts.profile import Straight
 from flexstage.parts.rod import Rod
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from flexstage.solid.fea.solver.model import SolidModel, model_with_parts
+from tests.stock import ALUMINIUM, GAUGE, STEEL
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, grading=0.6, order=2), modes=4)
 MOUNT = "mount"

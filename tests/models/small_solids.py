@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from flexstage.base.units.scale import X, mm
-from flexstage.cases.stock import STEEL
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.rod import Rod
@@ -13,6 +12,7 @@ from flexstage.solid.fea.jobs.cache import key_of
 from flexstage.solid.fea.jobs.reducing import Reduce
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from flexstage.solid.fea.solver.component import Component, components
+from tests.stock import STEEL
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, grading=0.6, order=2), modes=2)
 

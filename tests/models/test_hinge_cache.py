@@ -13,7 +13,6 @@ import pytest
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.processes.progress import Step
 from flexstage.base.units.scale import mm
-from flexstage.cases.stock import STEEL
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Filleted
 from flexstage.parts.rod import Rod
@@ -28,6 +27,7 @@ from flexstage.solid.fea.jobs.hinge_cache import hinges_from_cache
 from flexstage.solid.fea.jobs.parts import Ways
 from flexstage.solid.fea.jobs.remote import Limits
 from flexstage.solid.fea.meshing.estimate import Accuracy
+from tests.stock import STEEL
 
 ROD = Rod("steel", 8 * mm, 3 * mm)
 ROUGH = Accuracy(error=0.5, orders=(2, 2), meshes=1)

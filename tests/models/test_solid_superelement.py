@@ -7,7 +7,6 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.base.units.scale import X, Y, Z, mm
-from flexstage.cases.stock import STEEL
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.static import static_gain
@@ -19,6 +18,7 @@ from flexstage.solid.exchange.matrices import export_superelement
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from flexstage.solid.fea.solver.model import model
 from flexstage.spatial.frame import COMPONENTS, FORCES
+from tests.stock import STEEL
 
 MESH = Fineness(neck=3.0, block=3.0, grading=0.8, order=2)
 KEPT, MANY = (Reduction(MESH, modes=count) for count in (12, 40))

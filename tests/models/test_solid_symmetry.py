@@ -11,7 +11,7 @@ import pytest
 from scipy.linalg import eigh
 
 from flexstage.base.number import Array
-from flexstage.cases.xy_stage import xy_stage
+from flexstage.cases.registry import case
 from flexstage.parts.body import Block, Cylinder
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
@@ -124,7 +124,7 @@ def _eigenvalues(element: Superelement) -> Array:
 
 
 def test_every_body_has_its_own_mass_though_others_are_assembled_with_it() -> None:
-    part = next(each for each in components(xy_stage()) if len(each.bodies) > 1)
+    part = next(each for each in components(case("xy-stage")) if len(each.bodies) > 1)
     plan = Reduction(Fineness(neck=6.0, block=3.0, order=2), modes=0)
     meshed = mesh_component(part, plan.fineness)
     volumes = 1e-9 * np.array(ngsolve.Integrate(ngsolve.CoefficientFunction(1.0), meshed.mesh, element_wise=True, order=8))
@@ -152,12 +152,12 @@ def _statics(element: Superelement) -> dict[str, Array]:
     response = np.vstack([np.zeros((size, loads.shape[1])), np.linalg.solve(whole[size:, size:], loads[size:])])
     motions = {"": _face_motions(element), ", loaded": response}
     found = {f"own {name}": law for name, law in element.body_inertia.items()}
-    for case, motion in motions.items():
-        found[f"carried{case}"] = motion.T @ element.carried
+    for kind, motion in motions.items():
+        found[f"carried{kind}"] = motion.T @ element.carried
         for name in ("stiffness", "inertia"):
-            found |= {f"{name} {group}{case}": motion.T @ law @ motion for group, law in getattr(element, name).items()}
+            found |= {f"{name} {group}{kind}": motion.T @ law @ motion for group, law in getattr(element, name).items()}
         for name in ("bodies", "resultants"):
-            found |= {f"{name} {group}{case}": rows @ motion for group, rows in getattr(element, name).items()}
+            found |= {f"{name} {group}{kind}": rows @ motion for group, rows in getattr(element, name).items()}
     return found
 
 

@@ -9,7 +9,6 @@ import pytest
 
 from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.registry import case
-from flexstage.cases.stock import STEEL
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.linear.eigen import eigen
@@ -33,6 +32,7 @@ from flexstage.solid.results.verification import verify
 from flexstage.solid.show.tables import verdict_table_of
 from tests.laws.test_superelement import elastic, part_of
 from tests.roundtrip.test_gltf import leaf_stage
+from tests.stock import STEEL
 
 COARSE = Reduction(Fineness(neck=3.0, block=3.0, grading=0.8, order=2), modes=4)
 FINER = Reduction(Fineness(neck=3.0, block=3.0, grading=0.8, order=3), modes=4)

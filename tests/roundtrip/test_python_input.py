@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.parts.part import Restricted
 
-STAGE = fs.case("parallelogram")
+STAGE = parallelogram()
 PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 """Entries of moments and products of inertia."""
 

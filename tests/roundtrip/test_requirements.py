@@ -20,7 +20,6 @@ from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import single_axis, stroke_limits
-from flexstage.cases.hexapod import Hexapod, hexapod
 from flexstage.cases.registry import CASES, case
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -68,7 +67,7 @@ def readable(mechanism, key, text):
 
 
 def test_a_line_is_read():
-    stage = replace(hexapod(), requirements={"stroke.ry": "  at least   300 urad  at sample ", "loss": "at most 5 %"})
+    stage = replace(case("hexapod"), requirements={"stroke.ry": "  at least   300 urad  at sample ", "loss": "at most 5 %"})
     first, second = requirements(stage)
     assert (first.kind, first.name, first.point, first.sense) == (stroke, "ry", "sample", Sense.AT_LEAST)
     assert first.limit == pytest.approx(300e-6)
@@ -143,7 +142,7 @@ def test_values_are_those_of_the_analyses(stage):
 
 def test_the_mass_of_everything():
     """Discs as cylinders, stacks as stated, necks as solids of revolution: t(x) = t + 2 (R - (R^2 - x^2)^0.5)."""
-    stage = hexapod()
+    stage = case("hexapod")
     density = {name: material.density for name, material in stage.materials.items()}
     plate = np.pi / 4.0 * (0.14**2 - 0.06**2) * 0.012 * density["aluminium"]
     adapters = 12 * np.pi / 4.0 * 0.014**2 * 0.005 * density["steel"]
@@ -208,7 +207,7 @@ def test_what_the_stage_cannot_answer_fails_with_a_reason(stage):
 
 def test_points_of_interest_count():
     """A stroke about the sample, and its stiffness: other numbers than at the platform's reference."""
-    stage = hexapod()
+    stage = case("hexapod")
     for key in ("stroke.rx", "stiffness.x", "resolution.x", "drift.z"):
         unit = {"stroke.rx": "urad", "stiffness.x": "N/um", "resolution.x": "nm", "drift.z": "nm/K"}[key]
         here, there = (one(stage, key, f"at least 1 {unit}{where}").value for where in ("", " at sample"))
@@ -218,14 +217,12 @@ def test_points_of_interest_count():
 def test_a_batch_is_judged_design_by_design():
     """Two head radii at once: a verdict each."""
     radii = np.array([0.05, 0.06])
-    together = replace(
-        hexapod(replace(Hexapod(), head_radius=radii)), requirements={"stroke.rz": "at least 500 urad", "safety": "at least 2"}
-    )
+    together = replace(case("hexapod", {"head_radius": radii}), requirements={"stroke.rz": "at least 500 urad", "safety": "at least 2"})
     for verdict in judge(together):
         assert verdict.passed.shape == (2,)
         for index, radius in enumerate(radii):
             alone = replace(
-                hexapod(replace(Hexapod(), head_radius=float(radius))), requirements={verdict.requirement.key: verdict.requirement.text}
+                case("hexapod", {"head_radius": float(radius)}), requirements={verdict.requirement.key: verdict.requirement.text}
             )
             assert verdict.value[index] == pytest.approx(float(judge(alone)[0].value), rel=1e-6)
 

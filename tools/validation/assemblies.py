@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 import flexstage as fs
-from flexstage.cases.bridge import Bridge, bridge
+from flexstage.cases.registry import case
 from flexstage.models.linear.static import static_gain
 from tools.validation.row import Row, Section, Tolerance, relative
 
@@ -62,8 +63,9 @@ def _pivot() -> Section:
 
 def _amplifier(angle: float, *, slender: bool) -> fs.Mechanism:
     """The worked bridge without guide stiffness; `slender`: its leaves are given by Euler and Bernoulli instead of our leaf."""
-    leaf = fs.Leaf("aluminium", length=5 * fs.mm, thickness=0.5 * fs.mm, width=10 * fs.mm)
-    stage = bridge(Bridge(leaf=leaf, bar=20 * fs.mm, angle=angle, half_span=40 * fs.mm))
+    sizes = {"leaf": 5 * fs.mm, "leaf_thickness": 0.5 * fs.mm, "rod": 20 * fs.mm, "half_span": 40 * fs.mm}
+    stage = case("bridge", {**sizes, "angle": angle})
+    leaf = cast("fs.Leaf", stage.parts["leaf"])
     material = replace(stage.materials["aluminium"], young=70 * fs.GPa)
     area, second = leaf.thickness * leaf.width, leaf.width * leaf.thickness**3 / 12.0
     stiff = float(leaf.length / (material.young * area))
@@ -91,7 +93,7 @@ def _bridge() -> Section:
     for angle, value in published:
         tenth = Tolerance(0.1 * (1.0 / math.tan(math.radians(angle)) - float(value)))
         rows.append(Row(f"{angle:g} deg, our leaf", "the same", value, amplification(angle * fs.deg, slender=False), "1", tenth))
-    rigid = fs.ideal(bridge(Bridge(angle=6 * fs.deg)))
+    rigid = fs.ideal(case("bridge"))
     rows.append(Row("6 deg, ideal", "cot(angle)", "9.5144", float(np.abs(rigid.jacobian.values[1, 0]))))
     text = (
         "E = 70 GPa, leaves 5 x 0.5 x 10 mm, bars of 20 mm. The closed form is Euler-Bernoulli; our leaf has shear and plate action "

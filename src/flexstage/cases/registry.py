@@ -10,63 +10,49 @@ from typing import Any
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Number, Table
-from flexstage.cases.bridge import Bridge, bridge
-from flexstage.cases.case import Case, Shipped
+from flexstage.cases.case import Case, FunctionCase
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTED, double_triangle
-from flexstage.cases.file_case import FileCase
-from flexstage.cases.hexapod import Hexapod, hexapod
-from flexstage.cases.mirror_mount import MirrorMount, mirror_mount
-from flexstage.cases.parallelogram import Parallelogram, parallelogram
 from flexstage.cases.parameters import Stated, parameter, with_parameters
-from flexstage.cases.telescope_mount import TelescopeMount, telescope_mount
-from flexstage.cases.tilt_stage import TiltStage, tilt_stage
-from flexstage.cases.tip_tilt import TipTilt, tip_tilt
-from flexstage.cases.voice_coil_stage import VoiceCoilStage, voice_coil_stage
-from flexstage.cases.xy_stage import XYStage, xy_stage
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import round_to_digits
 
-CASES: Mapping[str, Shipped] = {
-    "double-triangle": Case(
-        double_triangle, SM_REF_B, "six axes: three direct units inside, three levers outside (Shin & Moon), buildable"
+_TRIANGLES = (
+    ("double-triangle", SM_REF_B, "six axes: three direct units inside, three levers outside (Shin & Moon), buildable"),
+    ("double-triangle-a", SM_REF_A, "the same stage for checking formulas; cannot be built"),
+    (
+        "double-triangle-refitted",
+        SM_REF_B_REFITTED,
+        "the buildable stage with neck and lever notch fitted by FEA instead of beam theory",
     ),
-    "double-triangle-a": Case(double_triangle, SM_REF_A, "the same stage for checking formulas; cannot be built"),
-    "double-triangle-refitted": Case(
-        double_triangle, SM_REF_B_REFITTED, "the buildable stage with neck and lever notch fitted by FEA instead of beam theory"
-    ),
-    "parallelogram": Case(parallelogram, Parallelogram(), "one axis: a platform on two leaves, pushed by one stack"),
-    "xy-stage": Case(xy_stage, XYStage(), "two axes: four carriages on leaves around a platform, two of them driven"),
-    "xy-stage-floating": Case(xy_stage, XYStage(driven=1), "the XY stage with one stack only: under-actuated"),
-    "bridge": Case(bridge, Bridge(), "one axis: a rhombus of leaf hinges amplifies one stack about nine times"),
-    "hexapod": Case(hexapod, Hexapod(), "six axes: six flexure struts in three pairs"),
-    "tip-tilt": Case(tip_tilt, TipTilt(), "tip, tilt and piston of a mirror: three stacks and a guide of three leaves"),
-    "tip-tilt-four": Case(tip_tilt, TipTilt(posts=4), "the mirror mount on four stacks: redundant actuation"),
-    "tilt-stage": Case(tilt_stage, TiltStage(), "one axis: an arm on two cross hinges, turned by a voice coil"),
-    "voice-coil-stage": Case(
-        voice_coil_stage, VoiceCoilStage(), "one axis: a platform between double parallelograms, pushed by a voice coil"
-    ),
-    "mirror-mount": Case(mirror_mount, MirrorMount(), "no axis: a mirror of one metre on three bipods of blades"),
-    "telescope-mount": Case(
-        telescope_mount, TelescopeMount(), "no axis: a mirror on three bipods of blades, a second one on struts above it"
-    ),
-    **{
-        each.name: each
-        for each in (
-            FileCase("leaf-guide", "one axis: a platform on two wide leaves, as published with solid elements"),
-            FileCase("resonator", "one axis: a plate of polysilicon on four straight legs, as published with formulas"),
-            FileCase("quad-suspension", "one axis: four masses on blade springs and silica fibres, as published for a detector"),
-            FileCase("voice-coil-xy", "two axes of long travel: carriages on double parallelograms, pushed by voice coils"),
-            FileCase("long-travel-xy", "two axes of +-5 mm on plain leaves, which weight presses and pulls: for large displacements"),
-            FileCase("three-rrr", "x, y and rz: a plate on three legs of notches, levers and stacks (3-RRR)"),
-            FileCase("stewart", "six axes: a Stewart platform on six amplified actuators"),
-            FileCase("scott-russell", "one axis: a stack amplified by a Scott Russell linkage of notches"),
-            FileCase("scanner", "one fast axis: a stack in a bridge of leaf hinges"),
-            FileCase("pointing-stage", "one rotation: an arm on two cartwheel hinges, pushed by a stack"),
-            FileCase("spiral-stage", "one axis of millimetres: a shaft in two spiral flexures, pushed by a voice coil"),
-            FileCase("steering-mirror", "tip and tilt: a mirror on a wire and a membrane, moved by four voice coils"),
-            FileCase("z-stage", "one vertical axis: four leaves, a payload, a spring that carries its weight, a voice coil"),
-        )
-    },
+)
+_FILES = {
+    "parallelogram": "one axis: a platform on two leaves, pushed by one stack",
+    "xy-stage": "two axes: four carriages on leaves around a platform, two of them driven",
+    "xy-stage-floating": "the XY stage with one stack only: under-actuated",
+    "bridge": "one axis: a rhombus of leaf hinges amplifies one stack about nine times",
+    "hexapod": "six axes: six flexure struts in three pairs",
+    "tip-tilt": "tip, tilt and piston of a mirror: three stacks and a guide of three leaves",
+    "tip-tilt-four": "the mirror mount on four stacks: redundant actuation",
+    "tilt-stage": "one axis: an arm on two cross hinges, turned by a voice coil",
+    "voice-coil-stage": "one axis: a platform between double parallelograms, pushed by a voice coil",
+    "mirror-mount": "no axis: a mirror of one metre on three bipods of blades",
+    "telescope-mount": "no axis: a mirror on three bipods of blades, a second one on struts above it",
+    "leaf-guide": "one axis: a platform on two wide leaves, as published with solid elements",
+    "resonator": "one axis: a plate of polysilicon on four straight legs, as published with formulas",
+    "quad-suspension": "one axis: four masses on blade springs and silica fibres, as published for a detector",
+    "voice-coil-xy": "two axes of long travel: carriages on double parallelograms, pushed by voice coils",
+    "long-travel-xy": "two axes of +-5 mm on plain leaves, which weight presses and pulls: for large displacements",
+    "three-rrr": "x, y and rz: a plate on three legs of notches, levers and stacks (3-RRR)",
+    "stewart": "six axes: a Stewart platform on six amplified actuators",
+    "scott-russell": "one axis: a stack amplified by a Scott Russell linkage of notches",
+    "scanner": "one fast axis: a stack in a bridge of leaf hinges",
+    "pointing-stage": "one rotation: an arm on two cartwheel hinges, pushed by a stack",
+    "spiral-stage": "one axis of millimetres: a shaft in two spiral flexures, pushed by a voice coil",
+    "steering-mirror": "tip and tilt: a mirror on a wire and a membrane, moved by four voice coils",
+    "z-stage": "one vertical axis: four leaves, a payload, a spring that carries its weight, a voice coil",
+}
+CASES: Mapping[str, Case] = {name: FunctionCase(name, line, double_triangle, own) for name, own, line in _TRIANGLES} | {
+    name: Case(name, line) for name, line in _FILES.items()
 }
 
 
@@ -79,7 +65,7 @@ def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism
     is no case or no parameter of this name, and for values that cannot be.
 
     >>> import numpy as np
-    >>> case("hexapod", {"slope": "50 deg", "neck.thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
+    >>> case("hexapod", {"slope": "50 deg", "neck_thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
     [0.0025, 0.003]
     """
     return round_to_digits(shipped_case(name).build(parameters)) if parameters else _as_shipped(name)
@@ -90,7 +76,7 @@ def _as_shipped(name: str) -> Mechanism:
     return round_to_digits(shipped_case(name).build())
 
 
-def shipped_case(name: str) -> Shipped:
+def shipped_case(name: str) -> Case:
     """The shipped case of that name. Raises `DesignError` with the nearest name where there is none.
 
     >>> shipped_case("hexapod").summary
@@ -124,7 +110,7 @@ class Variant:
     def mechanism_at(self, values: Mapping[str, Number]) -> Mechanism:
         """The description at other `values` of some parameters [SI], numbers or arrays: to the last bit, and without tags.
 
-        >>> Variant("hexapod").mechanism_at({"neck.profile.radius": 0.005}).parts["neck"].profile
+        >>> Variant("hexapod").mechanism_at({"neck_radius": 0.005}).parts["neck"].profile
         Circular(radius=0.005)
         """
         return replace(shipped_case(self.case).draw(with_parameters(self.parameters, values)), tags=Table({}))

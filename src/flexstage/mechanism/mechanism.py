@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, TypeAlias
 
@@ -277,6 +277,26 @@ class Mechanism(InNotebook, Description):
     def view(self, *, motion: str = "mode 1") -> Any:
         """Return the interactive 3-D view of the stage, for a notebook or a page: `flexstage.view`."""
         return RenderHook.views.view(self, motion=motion)
+
+
+def every_link(mechanism: Mechanism) -> Iterator[tuple[str, Link]]:
+    """Every link that is drawn, of the stage and of its units, by its address.
+
+    >>> [address for address, _ in every_link(Mechanism("", units={"leg": Unit(links={"foot": Link(("ground", "knee"), "wire")})}))]
+    ['units.leg.links.foot']
+    """
+    yield from ((f"links.{name}", link) for name, link in mechanism.links.items())
+    yield from ((f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items())
+
+
+def every_body(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
+    """Every body that is drawn, of the stage and of its units, by its address.
+
+    >>> [address for address, _ in every_body(Mechanism("", bodies={"platform": Body()}))]
+    ['bodies.platform']
+    """
+    yield from ((f"bodies.{name}", body) for name, body in mechanism.bodies.items())
+    yield from ((f"units.{unit}.bodies.{name}", body) for unit, item in mechanism.units.items() for name, body in item.bodies.items())
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:

@@ -12,7 +12,6 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.base.units.scale import GPa, mm
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.cases.stock import SLIM_STACK
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Block, Body
 from flexstage.parts.material import Material
@@ -22,6 +21,7 @@ from flexstage.solid.fea.meshing.fineness import Fineness
 from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
 from flexstage.solid.fea.meshing.straighten import straighten
 from flexstage.solid.fea.solver.component import Component, components
+from tests.stock import SLIM_STACK
 
 STEEL = Material(young=196 * GPa, poisson=0.27, density=7800.0, source="made up")
 ALUMINIUM = Material(young=71.7 * GPa, poisson=0.33, density=2810.0, source="made up")

@@ -28,9 +28,9 @@ def amplified(mechanism: Mechanism) -> Amplified:
     statics, without inner modes: valid well below the first of them with both faces held. Loads and preload of the stack inside are not
     passed on. Raises `DesignError` for a stage with none or several actuators.
 
-    >>> from flexstage.cases.bridge import bridge
-    >>> part = amplified(bridge())
-    >>> part.deformation[1] < 0.0, part.capacitance == bridge().parts["stack"].capacitance
+    >>> from flexstage.cases.registry import case
+    >>> part = amplified(case("bridge"))
+    >>> part.deformation[1] < 0.0, part.capacitance == case("bridge").parts["stack"].capacitance
     (True, True)
     """
     assembly, model = expand(mechanism), lumped(mechanism)

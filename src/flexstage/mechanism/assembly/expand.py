@@ -26,7 +26,20 @@ from flexstage.mechanism.assembly.sight import (
     sight,
     sight_of_link,
 )
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, GaugeSum, Link, LinkProbe, Mechanism, Probe, Stop, posed
+from flexstage.mechanism.mechanism import (
+    GROUND,
+    PLATFORM,
+    GaugePlace,
+    GaugeSum,
+    Link,
+    LinkProbe,
+    Mechanism,
+    Probe,
+    Stop,
+    every_body,
+    every_link,
+    posed,
+)
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, PlacedSolid, owner_of, pierce
 from flexstage.parts.compliance_matrix import Joint
@@ -267,7 +280,7 @@ class Same:
 def _assembly(key: Same) -> Assembly:
     """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
-    require([*place_findings(mechanism), *_unknown_names(mechanism), *compound_findings(mechanism)])
+    require([*place_findings(mechanism), *unknown_names(mechanism), *compound_findings(mechanism)])
     placed = tuple(copies(mechanism))
     described = tuple(_links(mechanism, placed))
     elements = {link.name: link for link in described if isinstance(link, PlacedSuperelement)}
@@ -297,9 +310,7 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
     >>> print(*place_findings(Mechanism("", links={"strut": Link(("ground", "platform"), "wire", end=(0.0, 0.0, 0.1))})))
     links.strut: it has no from. Give both from and to, or at and along.
     """
-    links = [(f"links.{name}", link) for name, link in mechanism.links.items()]
-    links += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
-    for where, link in links:
+    for where, link in every_link(mechanism):
         ends, place = {"from": link.start, "to": link.end}, {"at": link.at, "along": link.along}
         stated = [name for name, value in {**place, **ends}.items() if value is not None]
         if {"from", "to"} & set(stated) and {"at", "along"} & set(stated):
@@ -311,35 +322,31 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(where, f"it has no {name}", advice)
 
 
-def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
-    """What a description names and does not hold, for those that are built without having passed the checks."""
-    drawn = [(f"links.{name}", link) for name, link in mechanism.links.items()]
-    drawn += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
-    bodies = [(f"bodies.{name}", body) for name, body in mechanism.bodies.items()]
-    bodies += [(f"units.{unit}.bodies.{name}", body) for unit, item in mechanism.units.items() for name, body in item.bodies.items()]
-    named: list[tuple[str, str, str | None, Mapping[str, object]]] = [
-        (f"{where}.part", "part", link.part, mechanism.parts) for where, link in drawn
-    ]
-    yield from (finding for where, link in drawn if link.part in mechanism.parts for finding in port_findings(where, link, mechanism.parts))
-    named += [(f"parts.{name}.material", "material", material_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
-    named += [(f"parts.{name}.counter", "material", counter_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
-    named += [
-        (f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
-        for where, body in bodies
-        for name, solid in body.solids.items()
-    ]
+def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
+    """Parts, materials, units and sensors that a description names and does not hold, and ports that links join otherwise.
+
+    >>> print(*unknown_names(Mechanism("", links={"strut": Link(("ground", "platform"), "wire")})))
+    links.strut.part: there is no part "wire". There are none.
+    """
+    parts, materials = mechanism.parts, mechanism.materials
+    named: list[tuple[str, str, str | None, Mapping[str, object]]] = []
+    for name, part in parts.items():
+        named += [(f"parts.{name}.material", "material", material_of(part), materials)]
+        named += [(f"parts.{name}.counter", "material", counter_of(part), materials)]
+    for where, body in every_body(mechanism):
+        named += [(f"{where}.solids.{name}.material", "material", solid.material, materials) for name, solid in body.solids.items()]
     named += [(f"placements.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.placements.items()]
-    named += [
-        (f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
-        for name, probe in mechanism.gauges.items()
-        if not isinstance(probe, GaugeSum)
-    ]
-    for where, kind, name, known in named:
-        if name and name not in known:
-            yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, known))
+    for name, probe in mechanism.gauges.items():
+        named += [] if isinstance(probe, GaugeSum) else [(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)]
+    named += [(f"{where}.part", "part", link.part, parts) for where, link in every_link(mechanism)]
+    for where, kind, wanted, known in named:
+        if wanted is not None and wanted not in known:
+            yield Finding(where, f'there is no {kind} "{wanted}"', suggest_nearest(wanted, known))
+    for where, link in every_link(mechanism):
+        yield from _port_findings(where, link, parts) if link.part in parts else ()
 
 
-def port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator[Finding]:
+def _port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator[Finding]:
     """A link joins a body at each port of its part by the port's name, or two bodies where the part has none."""
     ports, known = ports_of(parts[link.part]), isinstance(link.joins, Mapping)
     example = ", ".join(f'{name} = "{body}"' for name, body in zip(ports, itertools.cycle((GROUND, PLATFORM)), strict=False))
@@ -505,12 +512,10 @@ def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """
     advice = "State it of the members: draw them as links of their own"
     compounds = {name for name, part in mechanism.parts.items() if isinstance(inner(part), Compound)}
-    drawn = [(f"links.{name}", link) for name, link in mechanism.links.items()]
-    drawn += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
     for name in sorted(compounds):
         if isinstance(mechanism.parts[name], Restricted):
             yield Finding(f"parts.{name}", "it restricts a part that consists of several", advice)
-    for where, link in drawn:
+    for where, link in every_link(mechanism):
         if link.free is not None and link.part in compounds:
             yield Finding(f"{where}.free", f"part {link.part} consists of several, each with freedoms of its own", advice)
         if (link.start is not None or link.end is not None) and link.part in compounds:

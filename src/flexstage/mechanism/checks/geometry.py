@@ -19,7 +19,7 @@ from flexstage.mechanism.assembly.expand import NO_IMAGE, apply_overrides, place
 from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.grammar.node import join
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import Mechanism, every_body, every_link
 from flexstage.parts.body import Body, Extrusion, Imported, Inertia, Solid, winding
 from flexstage.parts.compliance_matrix import ComplianceMatrix
 from flexstage.parts.condensation import superelement_findings
@@ -54,10 +54,7 @@ def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterat
         for owner, part in _departed_parts(mechanism):
             yield from _part(owner, part)
     stage = placed_bodies(mechanism)
-    bodies = {f"bodies.{name}": body for name, body in mechanism.bodies.items()}
-    for unit, drawn in mechanism.units.items():
-        bodies |= {f"units.{unit}.bodies.{name}": body for name, body in drawn.bodies.items()}
-    for where, body in bodies.items():
+    for where, body in every_body(mechanism):
         yield from _body(where, body) if body.of is None else _lent(where, body, stage.get(body.of))
     yield from _without_image(mechanism)
     yield from _lengths(mechanism)
@@ -70,9 +67,7 @@ def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterat
 
 def _lengths(mechanism: Mechanism) -> Iterator[Finding]:
     """Links between two points that are not as far apart as their part is long."""
-    links = [(f"links.{name}", link) for name, link in mechanism.links.items()]
-    links += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
-    for where, link in links:
+    for where, link in every_link(mechanism):
         part = mechanism.parts.get(link.part)
         own = None if part is None else inner(part)
         if link.start is None or link.end is None or not isinstance(own, Shaped):

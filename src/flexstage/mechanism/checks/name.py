@@ -7,15 +7,14 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.mechanism.assembly.expand import joined, placed_bodies, port_findings
+from flexstage.mechanism.assembly.expand import joined, placed_bodies, unknown_names
 from flexstage.mechanism.assembly.likeness import drawn_units, likeness_findings
 from flexstage.mechanism.assembly.pattern import copy_names
 from flexstage.mechanism.assembly.sight import gauge_findings
 from flexstage.mechanism.grammar.grammar import RESERVED
-from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NOT_GROWING, PLATFORM, GaugeSum, Link, Mechanism, Unit, posed
+from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit, every_body, posed
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.compliance_matrix import ComplianceMatrix
-from flexstage.parts.part import counter_of, material_of
 
 MOST_COPIES = 360
 _LONGEST = 60
@@ -32,13 +31,14 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
     yield from _spelling(mechanism)
     yield from _bodies(mechanism)
     yield from _owners(mechanism)
-    yield from _materials(mechanism)
+    yield from unknown_names(mechanism)
+    yield from _others(mechanism)
     yield from likeness_findings(mechanism)
     yield from _check_placement(mechanism)
     yield from _clashes(mechanism)
     yield from _loops(mechanism)
     for where, link, bodies in _links(mechanism):
-        yield from _link(mechanism, where, link, bodies)
+        yield from _link(where, link, bodies)
 
 
 def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -80,7 +80,7 @@ def _spelling(mechanism: Mechanism) -> Iterator[Finding]:
     tables: dict[str, Iterable[str]] = {section: getattr(mechanism, section) for section in _NAMED}
     for name, unit in mechanism.units.items():
         tables[f"units.{name}.bodies"], tables[f"units.{name}.links"] = unit.bodies, unit.links
-    for where, body in _all_bodies(mechanism):
+    for where, body in every_body(mechanism):
         tables[f"{where}.solids"], tables[f"{where}.points"] = body.solids, body.points
     for where, names in tables.items():
         for name in names:
@@ -88,14 +88,6 @@ def _spelling(mechanism: Mechanism) -> Iterator[Finding]:
                 yield Finding(
                     f'{where}."{name[:_LONGEST]}"', "this is no legal name", "Use letters, digits, _ and -; tags and like are reserved"
                 )
-
-
-def _all_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
-    for name, body in mechanism.bodies.items():
-        yield f"bodies.{name}", body
-    for unit, drawn in mechanism.units.items():
-        for name, body in drawn.bodies.items():
-            yield f"units.{unit}.bodies.{name}", body
 
 
 def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
@@ -111,7 +103,7 @@ def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
 def _owners(mechanism: Mechanism) -> Iterator[Finding]:
     """A body that is `of` another one names a body of the stage that moves by itself, or the ground."""
     stage = placed_bodies(mechanism)
-    for where, body in _all_bodies(mechanism):
+    for where, body in every_body(mechanism):
         if body.of is None:
             continue
         yield from _check_known(f"{where}.of", "body of the stage", body.of, {GROUND, *stage})
@@ -134,15 +126,10 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
                 yield Finding(f"units.{unit}.bodies.{name}", f'the stage itself has a body "{name}"', "Give the unit's body another name")
 
 
-def _materials(mechanism: Mechanism) -> Iterator[Finding]:
+def _others(mechanism: Mechanism) -> Iterator[Finding]:
     for name, part in mechanism.parts.items():
-        yield from _check_known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
-        yield from _check_known(f"parts.{name}.counter", "material", counter_of(part), mechanism.materials)
         if isinstance(part, ComplianceMatrix):
             yield from _check_known(f"parts.{name}.replaces", "part", part.replaces or None, mechanism.parts)
-    for where, body in _all_bodies(mechanism):
-        for name, solid in body.solids.items():
-            yield from _check_known(f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
     yield from _check_known("ground", "material", mechanism.ground, (*mechanism.materials, NOT_GROWING))
 
 
@@ -152,12 +139,7 @@ def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) 
 
 
 def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
-    for name, placement in mechanism.placements.items():
-        yield from _check_known(f"placements.{name}.unit", "unit", placement.unit, mechanism.units)
     gauged = {GROUND, *(name for name, body in placed_bodies(mechanism).items() if body.of is None)}
-    for name, probe in mechanism.gauges.items():
-        if not isinstance(probe, GaugeSum):
-            yield from _check_known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
     for name, probe in posed(mechanism.gauges).items():
         yield from _check_known(f"gauges.{name}.body", "body", probe.body, gauged)
         yield from _check_known(f"gauges.{name}.base", "body", probe.base, gauged)
@@ -201,7 +183,7 @@ def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(f"placements.{name}", f"a {kind} and a copy have this name", advice)
 
 
-def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
+def _link(where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
     for body in link.bodies:
         if body not in bodies:
             yield from _check_known(f"{where}.joins", "body", body, {GROUND, *bodies})
@@ -209,9 +191,6 @@ def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body])
     if len(owners) == 1:
         both = "both ends" if len(link.bodies) == 2 else "all ports"
         yield Finding(f"{where}.joins", f'{both} join "{owners.pop()}"', "Name two different bodies")
-    yield from _check_known(f"{where}.part", "part", link.part, mechanism.parts)
-    if link.part in mechanism.parts:
-        yield from port_findings(where, link, mechanism.parts)
 
 
 def _links_of_copies(mechanism: Mechanism) -> Iterator[str]:

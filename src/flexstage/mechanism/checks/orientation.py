@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Vector, stack
 from flexstage.mechanism.assembly.pattern import Pattern, Pose
 from flexstage.mechanism.checks.value import LARGEST, first_failing
-from flexstage.mechanism.mechanism import Link, Mechanism, posed
-from flexstage.parts.body import Body
+from flexstage.mechanism.mechanism import Mechanism, every_body, every_link, posed
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.part import Part, Restricted, ports_of
@@ -24,15 +23,13 @@ _TOLERANCE = np.deg2rad(0.1)
 def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Findings about directions of links, patterns and solids.
 
+    >>> from flexstage.mechanism.mechanism import Link
     >>> link = Link(("ground", "platform"), "wire", at=(0.0, 0.0, 0.0), along=(0.0, 0.0, 0.0))
     >>> print(*orientation_findings(Mechanism("", links={"strut": link})))
     links.strut.along: the direction is zero. Give one of x, -x, y, -y, z, -z, or three numbers.
     """
-    yield from _links(mechanism, "", mechanism.links.items())
-    for unit, drawn in mechanism.units.items():
-        yield from _links(mechanism, f"units.{unit}.", drawn.links.items())
-        yield from _solids(f"units.{unit}.bodies", drawn.bodies.items())
-    yield from _solids("bodies", mechanism.bodies.items())
+    yield from _links(mechanism)
+    yield from _solids(mechanism)
     for name, part in mechanism.parts.items():
         for port, placed in ports_of(part).items():
             yield from _pair(f"parts.{name}.ports.{port}.along", placed.along, f"parts.{name}.ports.{port}.up", placed.up)
@@ -44,9 +41,8 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _pattern(f"stops.{name}", stop.pattern, has_up=False)
 
 
-def _links(mechanism: Mechanism, prefix: str, links: Iterable[tuple[str, Link]]) -> Iterator[Finding]:
-    for name, link in links:
-        where = f"{prefix}links.{name}"
+def _links(mechanism: Mechanism) -> Iterator[Finding]:
+    for where, link in every_link(mechanism):
         yield from _pair(f"{where}.{'to' if link.along is None else 'along'}", link.direction, f"{where}.bends", link.bends)
         part = mechanism.parts.get(link.part)
         if part is not None and link.bends is None and not is_axisymmetric(part, link.free):
@@ -73,10 +69,10 @@ def is_axisymmetric(part: Part, free: tuple[Freedom, ...] | None = None) -> bool
     return is_even(part.free) if isinstance(part, Joint) else part.is_axisymmetric
 
 
-def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]:
-    for name, body in bodies:
-        for solid_name, solid in body.solids.items():
-            here = f"{where}.{name}.solids.{solid_name}"
+def _solids(mechanism: Mechanism) -> Iterator[Finding]:
+    for where, body in every_body(mechanism):
+        for name, solid in body.solids.items():
+            here = f"{where}.solids.{name}"
             along, up = getattr(solid, "along", None), getattr(solid, "up", None)
             if along is not None:
                 yield from _pair(f"{here}.along", along, f"{here}.up", up)

@@ -5,24 +5,21 @@ Flat faces are exact. Arcs are followed within `SAGITTA`, from inside, so that p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import pairwise, product
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.number import Array, first_design
-from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
+from flexstage.base.number import Array
+from flexstage.parts.body import Solid
 from flexstage.parts.part import Part, inner
+from flexstage.parts.pieces import MOST, SAGITTA, corner_count, solid_pieces
 from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length, single
 from flexstage.parts.section import Section
 from flexstage.parts.shape import Profiled, Shaped
-from flexstage.spatial.convex import Convex, cuboid, frustum
-
-SAGITTA = 2e-5
-"""How far a piece stays inside a round face at most [m]."""
-_MOST = 96
+from flexstage.spatial.convex import Convex, frustum
 
 Form: TypeAlias = Shaped | Solid
 
@@ -41,6 +38,7 @@ def form_of(part: Part) -> Form | None:
 def is_flat(form: Form) -> bool:
     """Whether its pieces are the form itself, without arcs.
 
+    >>> from flexstage.parts.body import Block
     >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))
     True
     """
@@ -53,11 +51,12 @@ def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
 
     The holes that others of its body leave in a solid count as filled.
 
-    >>> len(pieces(Block("steel", (0.1, 0.1, 0.1)))), len(pieces(Block("steel", (0.1, 0.1, 0.1), hole=(0.05, 0.05))))
-    (1, 4)
+    >>> from flexstage.parts.leaf import Leaf
+    >>> len(pieces(Leaf("steel", 0.02, 0.001, 0.01)))
+    1
     """
     if isinstance(form, Solid):
-        return tuple(_SOLIDS[type(form)](form))
+        return solid_pieces(form)
     return tuple(_hinge(form, trim) if isinstance(form, Profiled) else _loft(form, trim))
 
 
@@ -78,73 +77,8 @@ def _slab(stations: tuple[float, float], sections: tuple[Section, Section], angl
 
 def _angles(form: Shaped) -> Array:
     """Where a round outline has corners."""
-    count = _corners(0.5 * max(single(np.maximum(section.height, section.width)) for _, section in form.silhouette))
+    count = corner_count(0.5 * max(single(np.maximum(section.height, section.width)) for _, section in form.silhouette))
     return 2.0 * np.pi * np.arange(count) / count
-
-
-def _frame(form: Block) -> Iterator[Convex]:
-    """A block, or the four walls around its hole."""
-    x, y, z = (0.5 * single(value) for value in form.size)
-    if form.hole is None:
-        yield cuboid((-x, -y, -z), (x, y, z))
-        return
-    inner, clear = (0.5 * single(value) for value in form.hole)
-    for side in (-1.0, 1.0):
-        low, high = sorted((side * inner, side * x))
-        yield cuboid((low, -y, -z), (high, y, z))
-        low, high = sorted((side * clear, side * y))
-        yield cuboid((-inner, low, -z), (inner, high, z))
-
-
-def _wedges(form: Extrusion) -> Iterator[Convex]:
-    corners, half = first_design(np.real(form.corners), 2), 0.5 * single(form.height)
-    for trio in triangles(corners):
-        upright = frustum(-half, half, corners[list(trio)], corners[list(trio)])
-        yield Convex(*(np.roll(each, -1, axis=1) for each in (upright.points, upright.normals, upright.edges)))
-
-
-def _ball(form: Sphere) -> Iterator[Convex]:
-    """Slabs between rings, from pole to pole."""
-    radius = 0.5 * single(form.diameter)
-    count = _corners(radius) // 4 * 2
-    angles = np.linspace(0.0, np.pi, count // 2 + 1)
-    rims = [_circle(radius * np.sin(angle), count) for angle in angles]
-    for here, there in pairwise(range(len(angles))):
-        yield frustum(-radius * np.cos(angles[here]), -radius * np.cos(angles[there]), rims[here], rims[there])
-
-
-def _corners(radius: float) -> int:
-    """Sides of the polygon that stays within `SAGITTA` of a circle."""
-    half = np.arccos(max(0.0, 1.0 - SAGITTA / radius))
-    return int(np.clip(4 * np.ceil(np.pi / half / 4.0), 8, _MOST))
-
-
-def _circle(radius: float, count: int) -> Array:
-    angles = 2.0 * np.pi * np.arange(count) / count
-    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
-
-
-def _tube(size: float, diameter: float, bore: float) -> Iterator[Convex]:
-    half, count = 0.5 * size, _corners(0.5 * diameter)
-    rim = _circle(0.5 * diameter, count)
-    if bore == 0.0:
-        yield frustum(-half, half, rim, rim)
-        return
-    grown = 0.5 * bore / np.cos(np.pi / count)
-    inner = _circle(min(grown, 0.5 * (grown + 0.5 * diameter)), count)
-    for here, there in pairwise([*range(count), 0]):
-        sector = np.array([rim[here], rim[there], inner[there], inner[here]])
-        yield frustum(-half, half, sector, sector)
-
-
-_SOLIDS: Mapping[type[Solid], Callable[[Any], Iterable[Convex]]] = {
-    Block: _frame,
-    Cylinder: lambda form: _tube(single(form.length), single(form.diameter), 0.0 if form.bore is None else single(form.bore)),
-    Extrusion: _wedges,
-    Sphere: _ball,
-    Imported: lambda _: (),
-    Pierced: lambda form: pieces(form.solid),
-}
 
 
 def _hinge(form: Profiled, trim: float) -> Iterator[Convex]:
@@ -169,7 +103,7 @@ def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float],
     if straight > 0.0:
         yield (-straight, straight), (0.0, 0.0)
     step = 2.0 * np.arccos(max(0.0, 1.0 - SAGITTA / max(along, across)))
-    angles = np.linspace(0.0, 0.5 * np.pi, int(np.clip(np.ceil(0.5 * np.pi / step), 4, _MOST // 2)) + 1)
+    angles = np.linspace(0.0, 0.5 * np.pi, int(np.clip(np.ceil(0.5 * np.pi / step), 4, MOST // 2)) + 1)
     for (begin, end), side in product(pairwise(angles), (1.0, -1.0)):
         here, there = straight + along * np.sin(begin), min(half, straight + along * np.sin(end))
         if there <= here:
@@ -184,9 +118,9 @@ def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float],
 def _chords(contour: Contour, half: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
     """Chords between stations up to `half`, each lowered by what it rises above the contour."""
     for start, end in pairwise(contour.knots):
-        samples = np.linspace(start, end, 4 * _MOST + 1)
-        bend = float(np.max(np.abs(np.diff(contour.height(samples), 2)))) * (4.0 * _MOST) ** 2
-        count = int(np.clip(np.ceil(np.sqrt(bend / (8.0 * SAGITTA))), 2, _MOST // 2))
+        samples = np.linspace(start, end, 4 * MOST + 1)
+        bend = float(np.max(np.abs(np.diff(contour.height(samples), 2)))) * (4.0 * MOST) ** 2
+        count = int(np.clip(np.ceil(np.sqrt(bend / (8.0 * SAGITTA))), 2, MOST // 2))
         for (here, there), side in product(pairwise(np.linspace(start, end, count + 1)), (1.0, -1.0)):
             far = min(half, there)
             if far <= here:

@@ -100,8 +100,8 @@ def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
     Outlines that belong to other bodies are left out; the output is the end face of the link that joins the platform, kept plane. Raises
     `DesignError` where no unit of the stage is of this kind.
 
-    >>> from flexstage.cases.bridge import bridge
-    >>> solid_units(bridge())
+    >>> from flexstage.cases.registry import case
+    >>> solid_units(case("bridge"))
     Traceback (most recent call last):
         ...
     flexstage.base.finding.DesignError: units: none of the stage's units drives an output of its own by one actuator. ...

@@ -74,9 +74,9 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
 def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
     """The parameters that a variable's table at `where` names, by full name, and their quantity. Raises `DesignError` with all findings.
 
-    >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck.radius",)), "variables.r", Variant("hexapod"))
+    >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck_radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name
-    (('neck.profile.radius',), 'length')
+    (('neck_radius',), 'length')
     """
     if table.address is not None:
         raise refuse(f"{where}.address", "both an address and a parameter are named", "Name one of them")

@@ -51,9 +51,9 @@ class Tie:
 def stated_of(link: PlacedLink) -> Stated | None:
     """What a link without a shape is stated to do; `None` where it has a shape, is ideal or restricted, or states nothing.
 
-    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> links = expand(voice_coil_stage()).links
+    >>> links = expand(case("voice-coil-stage")).links
     >>> stated_of(links["motor"]).stiffness.any(), stated_of(links["G1/inner_left"])
     (np.False_, None)
     """
@@ -63,9 +63,9 @@ def stated_of(link: PlacedLink) -> Stated | None:
 def ends(assembly: Assembly) -> Iterator[End]:
     """The ends of all parts without a shape on bodies that move, in order.
 
-    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> [end.name for end in ends(expand(voice_coil_stage()))]
+    >>> [end.name for end in ends(expand(case("voice-coil-stage")))]
     ['motor:platform']
     """
     for name, link in assembly.links.items():
@@ -93,9 +93,9 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
     """The tie of a link of two bodies.
 
     >>> spring = Stated(np.eye(6), np.zeros((12, 12)))
-    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> link = expand(voice_coil_stage()).links["motor"]
+    >>> link = expand(case("voice-coil-stage")).links["motor"]
     >>> link_tie(link, spring, lambda end, body, frame: np.eye(6) * (body != "ground"), 0.0).strain.operator.trace().item()
     6.0
     """
@@ -149,9 +149,9 @@ def _all_ports(frames: Sequence[Frame]) -> Array:
 def stated_links(assembly: Assembly) -> dict[str, str]:
     """The links that are taken as stated, with the kind of their part.
 
-    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> stated_links(expand(voice_coil_stage()))
+    >>> stated_links(expand(case("voice-coil-stage")))
     {'motor': 'voice_coil'}
     """
     links = {name: link.part.kind for name, link in assembly.links.items() if stated_of(link) is not None}
