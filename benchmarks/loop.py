@@ -30,11 +30,11 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from flexstage.base.processes.native import compiler
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.hardware import FLAGS, hardware_code
 from flexstage.control.export.code.precision import Precision
+from flexstage.control.export.compiler import find_compiler
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import ControllerKind
@@ -92,7 +92,7 @@ def hardware(kind: ControllerKind, precision: Precision) -> None:
         for name, text in {"stage.h": made.header, "stage.c": made.source, "many.c": TIMED}.items():
             (place / name).write_text(text)
         flags = [each for each in FLAGS if each != "-Werror"]
-        subprocess.run([*compiler().command, *flags, "-shared", "-fPIC", "stage.c", "many.c", "-o", "many.so"], cwd=place, check=True)
+        subprocess.run([*find_compiler(), *flags, "-shared", "-fPIC", "stage.c", "many.c", "-o", "many.so"], cwd=place, check=True)
         library = ctypes.CDLL(str(place / "many.so"))
         start = time.process_time()
         library.many(ctypes.c_long(STEPS))
@@ -123,7 +123,7 @@ def main() -> None:
     told("numpy", spent, SECONDS, NUMPY)
     compensated = full_loop(inverse=True, motions=PLATFORM)
     told("numpy, inverse of the hysteresis as well", timed(lambda: simulate(compensated, reference))[1], SECONDS)
-    if compiler() is None:
+    if find_compiler() is None:
         print("generated C: no compiler is there")
     else:
         simulate_compiled(given, reference[:2])  # compiled and kept

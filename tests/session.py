@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 
 import pytest
 from threadpoolctl import threadpool_limits
-
-from flexstage.base.processes.native import folder, folder_defect
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -19,17 +16,10 @@ def _one_blas_thread():
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_cache(tmp_path_factory: pytest.TempPathFactory):
-    """Tests begin with an empty cache of superelements, one for all processes of a run, and leave the user's alone.
-
-    Compiled kernels are the user's: to build them takes half a minute, and their names are digests of their sources and their content.
-    """
+    """Tests begin with an empty cache of superelements, one for all processes of a run, and leave the user's alone."""
     own = tmp_path_factory.getbasetemp()
     cache = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "cache"
     cache.mkdir(mode=0o700, exist_ok=True)
-    kernels = folder()
-    if not folder_defect(kernels):
-        with suppress(FileExistsError):
-            (cache / "native").symlink_to(kernels)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("FLEXSTAGE_CACHE", str(cache))
         patch.setattr(os, "fsync", lambda _: None)  # what tests write need not outlive a power cut

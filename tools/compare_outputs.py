@@ -39,8 +39,6 @@ from tools.differences import DIFFERENT, EQUAL, RENAMED, SKIPPED, WITHIN, Meant,
 
 ROOT = Path(__file__).resolve().parents[1]
 CACHE = user_cache_path("flexstage", appauthor=False) / "compare-outputs"
-NATIVE = CACHE / "native"
-"""Compiled kernels of all sides; their names are those of their sources."""
 
 # What a change means to differ: regular expression at BASE -> replacement in the working tree, or the reason. Empty where nothing should.
 WORDS: Mapping[str, str] = {  # of command lines and of the files that they read
@@ -194,7 +192,6 @@ class Side:
             if begun is not None:
                 (begun / "out").mkdir()
                 (begun / "cache").mkdir()
-                (begun / "cache" / "native").symlink_to(NATIVE)
                 for name, text in task.files.items():
                     (begun / "out" / name).write_text(text, encoding="utf-8")
                 for number, line in enumerate(task.commands, 1):

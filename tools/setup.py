@@ -123,10 +123,13 @@ def interpreter_runs() -> bool:
 
 
 def digest(wanted: str) -> str:
-    """What .venv depends on: the lock files, the package's metadata with its version, and the interpreter."""
+    """What .venv depends on: the lock files, the package's metadata and version, its kernels, how they are built, and the interpreter."""
     state = hashlib.sha256()
     locks = (ROOT / "requirements" / f"{lock}.txt" for lock in LOCKS[wanted])
-    for path in (*locks, ROOT / "pyproject.toml", ROOT / "src" / "flexstage" / "__init__.py"):
+    kernels = sorted(path for pattern in ("*.c", "*.h") for path in (ROOT / "src" / "flexstage" / "models").rglob(pattern))
+    shared = ROOT / "src" / "flexstage" / "base" / "processes"
+    kernels += [ROOT / "hatch_build.py", shared / "lanes.h", shared / "native.py"]
+    for path in (*locks, ROOT / "pyproject.toml", ROOT / "src" / "flexstage" / "__init__.py", *kernels):
         state.update(path.read_bytes())
     state.update(str(sys.version_info[:2]).encode())
     return state.hexdigest()

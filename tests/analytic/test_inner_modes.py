@@ -170,7 +170,7 @@ def test_batches_are_single_designs_one_by_one():
 
 def test_studies_of_many_designs_know_them():
     values = np.array([[0.2], [0.3]]) * mm
-    found = platform_modes(plan(stage(LEAF), ("parts.leaf.thickness",)), values, slopes=True)
+    found = platform_modes(plan(stage(LEAF), ("parts.leaf.thickness",)), values)
     for number, (value,) in enumerate(values):
         single = modes(lumped(stage(replace(LEAF, thickness=float(value)))))
         np.testing.assert_allclose(found.frequencies[number], single.frequencies[list(single.platform)], rtol=1e-8)

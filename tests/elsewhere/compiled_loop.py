@@ -11,9 +11,10 @@ from functools import lru_cache
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.base.processes.native import Recipe, load_library
+from flexstage.base.storage.store import temporary_folder
 from flexstage.control.export.code.program import FLAGS, Program, Signal
 from flexstage.control.export.code.whole import loop_code
+from flexstage.control.export.compiler import compile_source
 from flexstage.control.simulation.disturbances import inflow
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Series, Simulated, simulation_result
@@ -43,10 +44,10 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
     >>> from flexstage.control.simulation.run import simulate
-    >>> from flexstage.base.processes.native import compiler
+    >>> from flexstage.control.export.compiler import find_compiler
     >>> example = integral_loop()
     >>> known, asked = machine(example.plant, example.controller), np.full((500, 1), 1e-6)
-    >>> found = simulate_compiled(known, asked) if compiler() else simulate(known, asked)
+    >>> found = simulate_compiled(known, asked) if find_compiler() else simulate(known, asked)
     >>> bool(np.max(np.abs(found.pose - simulate(known, asked).pose)) < 1e-18)
     True
     """
@@ -106,9 +107,10 @@ def _count(signals: tuple[Signal, ...]) -> int:
 def _load(name: str, header: str, source: str, numbers: int) -> ctypes.CDLL:
     """The library in this process; its state holds so many numbers."""
 
-    def answers(library: ctypes.CDLL) -> bool:
-        size = library[f"{name}_size"]
-        size.restype = ctypes.c_long
-        return all(library[f"{name}_{each}"] for each in ("init", "run")) and size() == numbers * ctypes.sizeof(ctypes.c_double)
-
-    return load_library(Recipe("the compiled simulation", {f"{name}.h": header, f"{name}.c": source}, FLAGS), answers)
+    with temporary_folder() as folder:
+        (folder / "made.so").write_bytes(compile_source("the compiled simulation", {f"{name}.h": header, f"{name}.c": source}, FLAGS))
+        library = ctypes.CDLL(str(folder / "made.so"))
+    size = library[f"{name}_size"]
+    size.restype = ctypes.c_long
+    assert size() == numbers * ctypes.sizeof(ctypes.c_double)
+    return library

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.processes.native import compiler
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
@@ -25,6 +24,7 @@ from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.export.code.hardware import FLAGS, Hardware, hardware_code
 from flexstage.control.export.code.precision import Precision
+from flexstage.control.export.compiler import find_compiler
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import ControllerKind
@@ -34,7 +34,7 @@ from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from tests.elsewhere.loops import electric, full_loop, six_axes, way
 
-needs_compiler = pytest.mark.skipif(compiler() is None, reason="no compiler of C on the PATH")
+needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no compiler of C on the PATH")
 SAMPLES = 200
 EMULATED = {
     "m7": ("mps2-an500", ("-mcpu=cortex-m7", "-mfloat-abi=hard", "-mfpu=fpv5-d16")),
@@ -79,7 +79,7 @@ def written(folder: Path, made: Hardware) -> Path:
 
 def here(folder: Path, made: Hardware, *flags: str) -> tuple[float, str]:
     """The test program on this computer: how far off, and the hash of all bits."""
-    command = [*compiler().command, *FLAGS, *flags, "-DSTAGE_MAIN", "stage.c", "stage_test.c", "-o", "stage"]
+    command = [*find_compiler(), *FLAGS, *flags, "-DSTAGE_MAIN", "stage.c", "stage_test.c", "-o", "stage"]
     subprocess.run(command, cwd=written(folder, made), check=True, capture_output=True)
     done = subprocess.run([folder / "stage"], check=False, capture_output=True, text=True)
     worst, bits = done.stdout.split()
@@ -205,7 +205,7 @@ class Loaded:
 
     def __init__(self, folder: Path, made: Hardware, given: Machine, states: int, settings: int) -> None:
         place = written(folder, made) / "stage.so"
-        command = [*compiler().command, *FLAGS, "-shared", "-fPIC", "stage.c", "-o", str(place)]
+        command = [*find_compiler(), *FLAGS, "-shared", "-fPIC", "stage.c", "-o", str(place)]
         subprocess.run(command, cwd=folder, check=True, capture_output=True)
         self.library = ctypes.CDLL(str(place))
         self.f, self.g, self.m = len(given.names), len(given.gauges), len(given.actuators)

@@ -13,13 +13,13 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
-from flexstage.base.processes.native import compiler
 from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.example import integral_loop
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.legs import with_legs
 from flexstage.control.export.code.program import FLAGS, WARNINGS, Program
 from flexstage.control.export.code.whole import loop_code
+from flexstage.control.export.compiler import find_compiler
 from flexstage.control.export.files import write_controller, write_fmu, write_plant
 from flexstage.control.export.fmu.unit import fmu, fmu_sources
 from flexstage.control.hysteresis.models.bouc_wen import BoucWen, bouc_wen
@@ -36,7 +36,7 @@ from tests.elsewhere.independent_loop import Computer
 from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way, without_limits
 from tests.elsewhere.test_loop_simulation import worst
 
-needs_compiler = pytest.mark.skipif(compiler() is None, reason="no compiler of C on the PATH")
+needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no compiler of C on the PATH")
 
 
 def enveloped() -> PrandtlIshlinskii:
@@ -125,7 +125,7 @@ def test_the_exported_controller_gives_the_volts_of_the_simulation(tmp_path):
     source, header = write_controller(tmp_path / "controller.c", given, "Made for a test.")
     assert "Made for a test." in header.read_text()
     made = tmp_path / "controller.so"
-    subprocess.run([*compiler().command, *FLAGS, "-o", str(made), str(source), "-lm"], check=True, cwd=tmp_path)
+    subprocess.run([*find_compiler(), *FLAGS, "-o", str(made), str(source), "-lm"], check=True, cwd=tmp_path)
     loaded, state = ctypes.CDLL(str(made)), ctypes.create_string_buffer(1 << 16)
     loaded.controller_init(state)
     program = controller_code(given)
@@ -201,7 +201,7 @@ def test_lost_readings_are_held_and_taken_again(inverse):
     for field in ("pose", "command", "asked", "given"):
         ours = getattr(found, field)
         assert np.max(np.abs(expected[field] - ours)) < 1e-11 * np.max(np.abs(ours)), field
-    if compiler() is not None:
+    if find_compiler() is not None:
         compiled = simulate_compiled(given, reference, disturbances | noise)
         good = np.abs(found.readings) < 1e-3
         assert np.array_equal(good, np.abs(compiled.readings) < 1e-3)
@@ -232,7 +232,7 @@ def test_a_reading_at_the_very_end_of_its_range_is_taken(reading, held):
     given = replace(machine(example.plant, through, motions=()), resolution=np.array([1e-9]), half_range=np.array([3e-9]))
     assert 3.0 * given.resolution[0] > given.half_range[0]
     entering = np.zeros((4, 1)), {"noise.S": np.full(4, reading)}
-    found = [simulate(given, *entering), *([simulate_compiled(given, *entering)] if compiler() is not None else [])]
+    found = [simulate(given, *entering), *([simulate_compiled(given, *entering)] if find_compiler() is not None else [])]
     assert [each.out_of_range.tolist() for each in found] == [[held]] * len(found)
     assert [each.pose.any() for each in found] == [held == 0.0] * len(found)
 
@@ -241,7 +241,7 @@ def spoilt_replay(given: Machine, tmp_path, reference: np.ndarray, readings: np.
     """Outputs of the exported controller, compiled by itself, for these references and readings."""
     source, _ = write_controller(tmp_path / "stage.c", given)
     made = tmp_path / "stage.so"
-    subprocess.run([*compiler().command, *FLAGS, "-o", str(made), str(source), "-lm"], check=True, cwd=tmp_path)
+    subprocess.run([*find_compiler(), *FLAGS, "-o", str(made), str(source), "-lm"], check=True, cwd=tmp_path)
     loaded, state = ctypes.CDLL(str(made)), ctypes.create_string_buffer(1 << 16)
     loaded.stage_init(state)
     known = replace(simulate(given, np.zeros((1, 6))), reference=reference, readings=readings)
@@ -296,9 +296,7 @@ def test_a_command_that_is_no_number_leaves_the_strokes(tmp_path):
 @needs_compiler
 def test_fast_mathematics_is_refused(tmp_path):
     source, _ = write_controller(tmp_path / "stage.c", full_loop())
-    done = subprocess.run(
-        [*compiler().command, "-c", "-ffast-math", str(source)], capture_output=True, text=True, check=False, cwd=tmp_path
-    )
+    done = subprocess.run([*find_compiler(), "-c", "-ffast-math", str(source)], capture_output=True, text=True, check=False, cwd=tmp_path)
     assert done.returncode != 0
     assert "without fast math" in done.stderr
 

@@ -12,17 +12,17 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from flexstage.base.processes.native import compiler
 from flexstage.control.example import integral_loop
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.whole import loop_code
+from flexstage.control.export.compiler import find_compiler
 from flexstage.control.export.files import write_fmu
 from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.run import simulate
 from tests.elsewhere.loops import full_loop, way
 
-pytestmark = pytest.mark.skipif(compiler() is None or sys.platform != "linux", reason="no compiler of C, or no Linux")
+pytestmark = pytest.mark.skipif(find_compiler() is None or sys.platform != "linux", reason="no compiler of C, or no Linux")
 
 OK, DISCARD, ERROR = 0, 2, 3
 LOGGER = ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p, c_char_p)

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from flexstage.apps import quadmath
+from flexstage.base.processes.native import KERNELS, SWITCH, kernel_lanes, kernel_library
 from flexstage.base.version import __version__
 
 _TIME_LIMIT = 120.0
@@ -159,32 +160,22 @@ def _figure_cache() -> Row:
 
 
 def native_code() -> Iterator[Row]:
-    """Where compiled code is kept. A note only: without a folder each process builds its own, without a compiler numpy does the work.
+    """Whether the kernels load. A note only: without them numpy does the work.
 
     >>> [row.verdict is Verdict.BAD for row in native_code()]
     [False]
     """
+    what, wanted = "kernels", f"built at installation, of {len(KERNELS)} sources"
     try:
-        from flexstage.base.finding import DesignError
-        from flexstage.base.processes.native import compiler, folder, folder_defect
-    except ImportError:
-        return
-    what, wanted = "compiled code", "a compiler of C, a folder of your own"
-    if compiler() is None:
-        remedy = "install gcc or clang, or set CC: some computations run several times as fast"
-        yield Row(what, "no compiler of C", wanted, Verdict.NOTE, remedy)
-        return
-    try:
-        why, place = folder_defect(folder()), str(folder())
-    except ImportError:  # a package that its own row names
-        return
-    except DesignError as error:
-        why, place = str(error), ""
-    if why:
-        remedy = "take the right to write there from others, or let FLEXSTAGE_CACHE name another folder"
-        yield Row(what, f"built anew by each process: {why}", wanted, Verdict.NOTE, remedy)
+        loaded = [source for source in KERNELS if kernel_library(source)]
+        found = f"{len(loaded)} for {kernel_lanes().name}" if os.environ.get(SWITCH) != "off" else f"off ({SWITCH})"
+    except Exception as error:  # noqa: BLE001 (lanes that this processor has not, or a package that its own row names)
+        loaded, found = [], str(error)
+    if len(loaded) == len(KERNELS):
+        yield Row(what, found, wanted, Verdict.GOOD)
     else:
-        yield Row(what, f"kept in {place}", wanted, Verdict.GOOD)
+        remedy = "install gcc or clang, or set CC, then install flexstage again: some computations run several times as fast"
+        yield Row(what, found, wanted, Verdict.NOTE, remedy)
 
 
 def _run_self_test(self_test: Callable[[], Row] | None) -> Row:

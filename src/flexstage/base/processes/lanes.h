@@ -1,5 +1,5 @@
 /* Vectors of doubles for every kernel of the project, with the vector extensions of GCC and Clang: as wide as the lanes that the
- * compiler is told of (native.py, which asks the processor). A "lane" is one case or one design; nothing that happens in a
+ * compiler is told of (native.py names them). A "lane" is one case or one design; nothing that happens in a
  * lane depends on the others.
  */
 #ifndef FLEXSTAGE_LANES_H
@@ -8,6 +8,11 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef FLEXSTAGE_SOURCES
+/* Digests of what a library is built from: of its sources, compared when it is loaded, and of all, compared when it would be built again. */
+const char *const flexstage_sources = FLEXSTAGE_SOURCES, *const flexstage_build = FLEXSTAGE_BUILD;
+#endif
 
 #if defined(__AVX512F__)
 #define WIDTH 8

@@ -7,7 +7,6 @@ Eigenvalues of H depend on no unit, no reference point and no basis of repeated 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,14 +38,13 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class Chosen:
-    """`mask` (b, k) of the platform's modes; `exact` (b,): as many as asked; `sure` (b,): no rounding to `MARGIN` changes the mask.
+    """`mask` (b, k) of the platform's modes; `exact` (b,): as many as asked.
 
-    Where only some modes of a cluster are the platform's, those of the largest participation stand for them, and nothing is sure.
+    Where only some modes of a cluster are the platform's, those of the largest participation stand for them.
     """
 
     mask: Array
     exact: Array
-    sure: Array
 
 
 def platform_rows(model: LinearModel) -> Array:
@@ -105,16 +103,14 @@ def choose(values: Array, parts: Array, choice: Choice) -> Chosen:
     """
     shares = np.linalg.eigvalsh(np.cumsum(np.moveaxis(parts[:, :, None] * parts[:, None], -1, 1), axis=1))
     first, last = _ends(groups(np.sqrt(values), choice.cluster))
-    least, count, most = (np.take_along_axis(np.sum(shares > THRESHOLD + step, axis=-1), last, axis=1) for step in (MARGIN, 0.0, -MARGIN))
+    count = np.take_along_axis(np.sum(shares > THRESHOLD, axis=-1), last, axis=1)
     before, after = (
         np.minimum(each, choice.count) for each in (np.where(first > 0, np.take_along_axis(count, first - 1, axis=1), 0), count)
     )
     order, rank = np.lexsort((-np.sum(parts**2, axis=1), first)), np.empty_like(first)
     np.put_along_axis(rank, order, np.broadcast_to(np.arange(rank.shape[1]), rank.shape), axis=1)
     mask = before + rank - first < after
-    decided = (least == most) & ((before == after) | (after - before == last + 1 - first))
-    needed = np.cumsum(mask[:, ::-1], axis=1)[:, ::-1] > 0
-    return Chosen(mask, mask.sum(axis=1) == choice.count, np.all(decided | ~needed, axis=1))
+    return Chosen(mask, mask.sum(axis=1) == choice.count)
 
 
 def groups(values: Array, gap: float) -> Array:
@@ -126,23 +122,6 @@ def groups(values: Array, gap: float) -> Array:
     with np.errstate(invalid="ignore"):
         new = ~(values[:, 1:] - values[:, :-1] <= gap * values[:, 1:])
     return np.concatenate([np.zeros((len(values), min(1, values.shape[1])), dtype=int), np.cumsum(new, axis=1)], axis=1)
-
-
-def means(values: Array, group: Array) -> Array:
-    """Mean (b, k, ...) over each value's group; groups are runs along axis 1.
-
-    >>> means(np.array([[1.0, 3.0, 5.0]]), np.array([[0, 0, 1]])).tolist()
-    [[2.0, 2.0, 5.0]]
-    """
-    count = group.shape[1]
-    if not values.size:
-        return values
-    place = (np.arange(len(group))[:, None] * count + group).ravel()
-    flat = values.reshape(len(place), math.prod(values.shape[2:]))
-    total = np.zeros_like(flat)
-    np.add.at(total, place, flat)
-    size = np.bincount(place, minlength=len(place))
-    return (total[place] / size[place, None]).reshape(values.shape)
 
 
 def _ends(group: Array) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""One design after another by dense matrices: what stages take that are small or not free six by six, and designs that iteration leaves."""
+"""All modes by dense matrices: of the family's own design, of stages that are small or locked, and of designs that iteration leaves."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.batch.choice import groups, participation
+from flexstage.models.batch.choice import Choice, choose, groups, participation, platform_rows
 from flexstage.models.linear.eigen import cholesky, solve
+from flexstage.models.linear.model import LinearModel
 
 _SINGULAR = 1e-11
 """Least eigenvalue of K scaled to a unit diagonal; below it `models.lumped` finds a motion without stiffness."""
@@ -16,26 +17,24 @@ _SINGULAR = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Whole:
-    """All modes of one design: `values` lambda (k,), `shapes` (n, k), `share` of the platform (k,); empty where K is singular.
+    """All modes of one design: `values` lambda (k,) and `shapes` (n, k); empty where K is singular.
 
     `parts` (6, k) is their participation in the platform's compliance. Of repeated modes those come first that have most of it.
     """
 
     values: Array
     shapes: Array
-    share: Array
     parts: Array
 
 
-def whole(stiffness: Array, inertia: Array, platform: Array, rows: Array, cluster: float) -> Whole:
-    """Every mode of one design; `platform` (n, n) is the platform's inertia, `rows` (6, n) its twist, `cluster` the gap of repeated modes.
+def whole(stiffness: Array, inertia: Array, rows: Array, cluster: float) -> Whole:
+    """Every mode of one design; `rows` (6, n) is the platform's twist, `cluster` the gap of repeated modes.
 
-    >>> found = whole(np.diag([4.0, 1.0]), np.eye(2), np.diag([1.0, 0.0]), np.eye(6, 2), 1e-6)
-    >>> found.values.tolist(), found.share.tolist()
-    ([1.0, 4.0], [0.0, 1.0])
+    >>> whole(np.diag([4.0, 1.0]), np.eye(2), np.eye(6, 2), 1e-6).values.tolist()
+    [1.0, 4.0]
     """
     size = len(stiffness)
-    none = Whole(np.zeros(0), np.zeros((size, 0)), np.zeros(0), np.zeros((6, 0)))
+    none = Whole(np.zeros(0), np.zeros((size, 0)), np.zeros((6, 0)))
     diagonal = np.diag(stiffness)
     if not (np.isfinite(stiffness).all() and np.isfinite(inertia).all()) or np.min(diagonal) <= 0.0:
         return none
@@ -49,7 +48,7 @@ def whole(stiffness: Array, inertia: Array, platform: Array, rows: Array, cluste
         own = group == number
         turn = np.linalg.svd(parts[:, own])[2].T
         parts[:, own], shapes[:, own] = parts[:, own] @ turn, shapes[:, own] @ turn
-    return Whole(solved.values, shapes, np.sum(shapes * (platform @ shapes), axis=0), parts)
+    return Whole(solved.values, shapes, parts)
 
 
 def _is_singular(scaled: Array) -> bool:
@@ -59,3 +58,23 @@ def _is_singular(scaled: Array) -> bool:
     except np.linalg.LinAlgError:
         pass
     return bool(np.linalg.eigvalsh(scaled)[0] < _SINGULAR)
+
+
+def whole_modes(model: LinearModel, count: int, cluster: float) -> list[Whole]:
+    """Every mode of each of `count` designs of a model.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> (whole_modes(lumped(double_triangle()), 1, 1e-6)[0].values[:2] ** 0.5 / (2.0 * np.pi)).round(1).tolist()
+    [106.0, 106.0]
+    """
+    size = len(model.coordinates)
+    rows = np.eye(6, size) if model.is_sparse else platform_rows(model)
+    matrices = (model.stiffness_matrix, model.inertia_matrix, rows)
+    stiffness, inertia, twists = (np.broadcast_to(each, (count, *each.shape[-2:])) for each in matrices)
+    return [whole(stiffness[number], inertia[number], twists[number], cluster) for number in range(count)]
+
+
+def platform_values(modes: Whole, choice: Choice) -> Array:
+    """Eigenvalues (k,) of the platform's modes of one design."""
+    return modes.values[choose(modes.values[None], modes.parts[None], choice).mask[0]] if len(modes.values) else modes.values

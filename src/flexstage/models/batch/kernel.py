@@ -1,42 +1,148 @@
-"""The iteration in C, several designs in each vector of the processor: built where there is a compiler, never required.
+"""The iteration in C, several designs in each vector of the processor: there where it was built at installation, never required.
 
-Where nothing is found to build it, or what is built does not work, there is none and numpy does the same work. FLEXSTAGE_KERNEL=off does
-without it, FLEXSTAGE_KERNEL=avx2 takes vectors of four where a processor has those of eight.
+Where there is none, dense matrices do the same work. FLEXSTAGE_KERNEL=off does without it, FLEXSTAGE_KERNEL=avx2 takes vectors of four
+where a processor has those of eight.
 """
 
 from __future__ import annotations
 
 import ctypes
 import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from flexstage.base.processes.native import compiler, kernel_lanes, kernel_library, kernel_recipe, key
+import numpy as np
 
-_WHAT, _SOURCE = "the kernel", Path(__file__).with_name("kernel.c")
+from flexstage.base.number import Array
+from flexstage.base.processes.native import kernel_library, library_digest
+from flexstage.models.batch.choice import MARGIN, THRESHOLD, Choice
+from flexstage.models.batch.graph import GROUNDED, SHAPES, Elimination, Topology
+
+MODES = 12
+"""Platform modes that the kernel finds at most."""
+_ROUNDS = 2
+"""How often modes are found one by one at most."""
+_VALUE = 1e-6
+"""Relative bound of eigenvalues."""
+_TOGETHER = 1e-4
+"""Relative gap of eigenvalues below which one side of it is not counted without the other."""
+_PIVOT = 1e-9
+"""Least pivot of K over its own diagonal entry: below it another method decides whether K is singular."""
+_SIZES = ("designs", "stride", "bodies", "links", "edges", "updates", "numbers", "parts", "m", "count", "rounds", "single")
+_TABLES = ("link", "range", "later", "heavy", "product", "update", "mirror", "inertia", "start")
+_ARRAYS = ("force", "numbers_")
+_SETTINGS = ("shift", "value", "cluster", "together", "threshold", "margin", "pivot")
+_RESULTS = ("values", "good")
+
+
+class _Task(ctypes.Structure):
+    """`Task` of kernel.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_int64) for name in _SIZES),
+        *((name, ctypes.c_void_p) for name in (*_TABLES, *_ARRAYS)),
+        *((name, ctypes.c_double) for name in _SETTINGS),
+        *((name, ctypes.c_void_p) for name in _RESULTS),
+    )
 
 
 @functools.cache
 def kernel() -> ctypes.CDLL | None:
-    """The library, built if need be; `None` where there cannot be one.
+    """The library; `None` where there is none.
 
     >>> found = kernel()
     >>> found is None or found.flexstage_width() in (2, 4, 8)
     True
     """
-    return kernel_library(_WHAT, _SOURCE, _answers)
+    library = kernel_library(SOURCE)
+    if library is not None:
+        library.flexstage_modes.restype = library.flexstage_width.restype = ctypes.c_int64
+    return library
 
 
-@functools.cache
+SOURCE = Path(__file__).with_name("kernel.c")
+
+
 def kernel_name() -> str:
-    """What iterates here: the library by what it is made of, or none. With the same name, results are the same to the bit.
+    """What iterates here: the library by its lanes and content, or none. With the same name, results are the same to the bit.
 
-    >>> "kernel" in kernel_name()
+    >>> kernel_name()[:9] in {"no kernel", "kernel av", "kernel ss", "kernel ne", "kernel pl"}
     True
     """
-    found = compiler() if kernel() is not None else None
-    return "no kernel" if found is None else f"kernel {kernel_lanes().name} {key(kernel_recipe(_WHAT, _SOURCE), found)[:12]}"
+    return "no kernel" if kernel() is None else f"kernel {library_digest(SOURCE)}"
 
 
-def _answers(library: ctypes.CDLL) -> bool:
-    library.flexstage_modes.restype = library.flexstage_width.restype = ctypes.c_int64
-    return library.flexstage_width() in (2, 4, 8)
+@dataclass(frozen=True, eq=False)
+class Start:
+    """What iteration begins with: the inertial forces (6 bodies, m) of the family's own modes, a `shift` amid their eigenvalues.
+
+    The first `needed` are found one by one.
+    """
+
+    force: Array
+    shift: float
+    needed: int
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """What the kernel is called with: the `task`, the arrays that it points to, and those among them that it writes."""
+
+    task: ctypes.Structure
+    arrays: Mapping[str, Array]
+    results: Mapping[str, Array]
+
+
+def solve_designs(library: ctypes.CDLL, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> tuple[Array, Array]:
+    """Eigenvalues (b, k) of the platform's modes of designs by their numbers (numbers, b), ascending, and where they are proved (b,)."""
+    job, count = kernel_job(library.flexstage_width(), tables, numbers, start, choice), numbers.shape[1]
+    if library.flexstage_modes(ctypes.byref(job.task)):
+        job.results["good"][:] = 0
+    return job.results["values"][:, :count].T, job.results["good"][:count] > 0
+
+
+def kernel_job(width: int, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> Job:
+    """The designs for a kernel of so many lanes."""
+    count = numbers.shape[1]
+    stride = -(-count // width) * width + 8  # rows a power of two apart would be on the same lines of the cache
+    arrays = {**tables, "force": np.ascontiguousarray(start.force), "numbers_": np.ascontiguousarray(numbers)}
+    results = {"values": np.empty((choice.count, stride)), "good": np.zeros(stride, dtype=np.int64)}
+    sizes = {
+        "designs": count,
+        "stride": stride,
+        "bodies": len(tables["inertia"]),
+        "links": len(tables["link"]),
+        "edges": len(tables["later"]),
+        "updates": len(tables["update"]),
+        "numbers": len(numbers),
+        "parts": int(tables["link"][:, 0].max()) + 1,
+        "m": start.force.shape[1],
+        "count": choice.count,
+        "rounds": _ROUNDS,
+        "single": start.needed,
+    }
+    settings = dict(zip(_SETTINGS, (start.shift, _VALUE, choice.cluster, _TOGETHER, THRESHOLD, MARGIN, _PIVOT), strict=True))
+    places = {name: array.ctypes.data for name, array in (arrays | results).items()}
+    return Job(_Task(**sizes, **settings, **places), arrays, results)
+
+
+def kernel_tables(topology: Topology, graph: Elimination) -> dict[str, Array]:
+    """What the kernel is given of a topology: arrays of whole numbers by name."""
+    place = {body: number for number, body in enumerate(graph.order)} | {GROUNDED: -1}
+    edge = {pair: number for number, pair in enumerate(graph.edges)}
+    ends = [(part, place[one], place[two]) for part, one, two in topology.links]
+    link = [(part, one, two, edge.get((min(one, two), max(one, two)), -1)) for part, one, two in ends]
+    firsts, bodies = [first for first, _ in graph.edges], np.arange(len(graph.order) + 1)
+    found = {
+        "link": link,
+        "range": np.searchsorted(firsts, bodies),
+        "later": [later for _, later in graph.edges],
+        "heavy": np.isin(np.arange(len(graph.edges)), [item[3] for item in link]),
+        "product": np.searchsorted([firsts[item[0]] for item in graph.updates], bodies),
+        "update": np.reshape(graph.updates, (-1, 3)),
+        "mirror": topology.mirror,
+        "inertia": topology.starts["inertia"] + 10 * np.array(graph.order),
+        "start": [topology.starts[kind] for kind in SHAPES if kind != "inertia"],
+    }
+    return {name: np.ascontiguousarray(table, dtype=np.int64) for name, table in found.items()}

@@ -72,18 +72,16 @@ class Tables:
 
 @functools.cache
 def kernel() -> ctypes.CDLL | None:
-    """The library, built if need be; `None` where there cannot be one.
+    """The library; `None` where there is none.
 
     >>> found = kernel()
     >>> found is None or found.flexstage_equilibria_width() in (2, 4, 8)
     True
     """
-    return kernel_library("the kernel of large displacements", Path(__file__).with_name("kernel.c"), _answers)
-
-
-def _answers(library: ctypes.CDLL) -> bool:
-    library.flexstage_equilibria.restype = library.flexstage_equilibria_width.restype = ctypes.c_int64
-    return library.flexstage_equilibria_width() in (2, 4, 8)
+    library = kernel_library(Path(__file__).with_name("kernel.c"))
+    if library is not None:
+        library.flexstage_equilibria.restype = library.flexstage_equilibria_width.restype = ctypes.c_int64
+    return library
 
 
 @functools.lru_cache(maxsize=64)

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from importlib.resources import files
 
 from flexstage.base.finding import refuse
-from flexstage.base.processes.native import Recipe, compile_source
 from flexstage.control.export.code.program import FLAGS, Program, Signal
+from flexstage.control.export.compiler import compile_source
 from flexstage.control.export.fmu.description import description, guid
 
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)
@@ -38,7 +38,7 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     members |= {f"sources/{name}": text.encode() for name, text in texts.items()}
     if not sources_only:
         folder, suffix = _place()
-        members[f"binaries/{folder}/{program.name}.{suffix}"] = compile_source(Recipe("a functional mock-up unit", texts, FLAGS))
+        members[f"binaries/{folder}/{program.name}.{suffix}"] = compile_source("a functional mock-up unit", texts, FLAGS)
     return _zip(members)
 
 

@@ -18,8 +18,8 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.base.version import __version__
 from flexstage.models.batch.engine import Plan, Status, plan_family, platform_modes
+from flexstage.models.batch.family import Family, drawn_family, family
 from flexstage.models.batch.kernel import kernel_name
-from flexstage.models.batch.parameters.numbers import Family, drawn_family, family
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.loaded import needs_load_check
 from flexstage.studies.sweeps.numbers import Numbers

@@ -1,1 +1,0 @@
-"""Parameters of a batch: from the numbers that vary to the features of the model."""
