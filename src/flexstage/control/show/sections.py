@@ -18,13 +18,13 @@ from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import Run
 from flexstage.control.study.stacks import Sweep
 from flexstage.control.study.study import LoopStudy
+from flexstage.control.tuning.objective import SENSITIVITY
 from flexstage.show.display import format_value, number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Prose, Section, fold, section
 from flexstage.show.table import matrix_table
 
-_GOAL = 2.0
 _NOISELESS = 1e-16
 
 
@@ -151,7 +151,7 @@ def frequency_section(found: LoopStudy) -> Section | None:
     spots = tuple(margin_spots(found))
     opened = open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes, spots=spots)
     loops = to_svg(opened, "open-loops", "Open loops over frequency")
-    peak = found.controller.tuning.spec.sensitivity if found.controller.tuning is not None else _GOAL
+    peak = found.controller.tuning.spec.sensitivity if found.controller.tuning is not None else SENSITIVITY
     pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), peak)
     sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
