@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY
-from flexstage.control.controllers.decentralised import Decentralised, channels
+from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
@@ -135,7 +135,7 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
 def _open_loop(given: ResolvedSetup, gains: Array) -> System:
     """Strokes for the reference, whatever the gauges say."""
     loop = given.plant.coordinates
-    return static(gains, channels("reference", loop), loop.commands("command."), given.step)
+    return static(gains, loop.motions("reference."), loop.commands("command."), given.step)
 
 
 def _loops(given: ResolvedSetup, gains: Array) -> Loops:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.tuning.judge import first_rise
+from flexstage.control.tuning.shape import Shape
 
 BAND, _BAND_OFF = 0.0172, 0.0185
 """Within which steps are settled, of the model and of modes that are off: less than the 2 % that are shown, for rounding of gauges."""
@@ -46,18 +48,31 @@ class Bounds:
 
 @dataclass(frozen=True, eq=False)
 class OneLoop:
-    """A loop with the others closed: S (v, f) of its plants at `frequencies` (v, f) [Hz], and T (w, h) at the even `lines` of steps.
+    """A loop with the others closed: a `point` of a shape, C times its `plants` (v, f) being its open loop at `frequencies` (v, f) [Hz].
 
-    `lines` (h,) [Hz] are from 0 to half the rate; `disturbed` and `heard` (f,) are the mean squares that S and T of the first plant leave
-    of the floor and of the gauges.
+    `slow` (w, h) are plants at the even `lines` (h,) [Hz] of steps, from 0, where there is none, to half the rate; `disturbed` and `heard`
+    (f,) are the mean squares that S and T of the first plant leave of the floor and of the gauges.
     """
 
+    shape: Shape
+    point: Array
     frequencies: Array
-    sensitivity: Array
+    plants: Array
     lines: Array
-    following: Array
+    slow: Array
     disturbed: Array
     heard: Array
+
+    @cached_property
+    def sensitivity(self) -> Array:
+        """S (v, f)."""
+        return 1.0 / (1.0 + self.plants * self.shape.value(self.point, self.frequencies))
+
+    @cached_property
+    def following(self) -> Array:
+        """T (w, h), 1 at rest."""
+        loops = self.slow * self.shape.value(self.point, self.lines[1:])
+        return np.concatenate([np.ones((len(loops), 1)), loops / (1.0 + loops)], axis=-1)
 
     @property
     def interval(self) -> float:

@@ -667,16 +667,25 @@ def _is_stable(whole: Array) -> bool:
 
 
 def one_loops(within: Field, found: Found) -> list[OneLoop]:
-    """Each loop with the others closed; S_ij/S_ii of what disturbs loop j does not depend on its own controller."""
+    """Each loop with the others closed: C g = 1/S_ii - 1, and S_ij/S_ii of what disturbs loop j, none of which depends on C."""
     whole = coupled_sensitivities(within.plants, found, within.frequencies)
-    slow = 1.0 - coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
+    slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
+    responses, slow_responses = found.responses(within.frequencies), found.responses(within.lines[1:])
     loops = []
-    for loop in range(whole.shape[-1]):
+    for loop, (shape, point) in enumerate(zip(found.shapes, found.points, strict=True)):
         own = whole[..., loop, loop]
         shaken = np.einsum("fj,fjd->fd", whole[0, :, loop] / own[0, :, None], within.disturbed)
-        following = np.pad(slow[..., loop, loop], ((0, 0), (1, 0)), constant_values=1.0)
-        disturbed, heard = np.sum(np.abs(shaken) ** 2, axis=-1), np.abs(within.heard[:, loop]) ** 2
-        loops.append(OneLoop(within.frequencies, own, within.lines, following, disturbed, heard))
+        one = OneLoop(
+            shape=shape,
+            point=point,
+            frequencies=within.frequencies,
+            plants=(1.0 / own - 1.0) / responses[..., loop],
+            lines=within.lines,
+            slow=(1.0 / slow[..., loop, loop] - 1.0) / slow_responses[:, loop],
+            disturbed=np.sum(np.abs(shaken) ** 2, axis=-1),
+            heard=np.abs(within.heard[:, loop]) ** 2,
+        )
+        loops.append(one)
     return loops
 
 
