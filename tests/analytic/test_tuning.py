@@ -22,7 +22,7 @@ from flexstage.control.plant_models.plants import plant
 from flexstage.control.robustness.stability import verdict
 from flexstage.control.robustness.stability_margins import peaks
 from flexstage.control.systems.closed import LoopBreak, loop, open_at
-from flexstage.control.tuning.attempt import Trial
+from flexstage.control.tuning.attempt import BandwidthTrial
 from flexstage.control.tuning.laws import FAMILIES, LQG_FAMILY, PI_FAMILY, PID_FAMILY, RESONANT_FAMILY
 from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.tune import tune
@@ -105,7 +105,7 @@ def test_the_reason_has_the_numbers(sampled):
     said = str(error.value)
     form = r"at 30 Hz the peak of S with PI is ([\d.]+) dB at (\d+) Hz, ([\d.]+) dB above the 6.0 dB allowed; ([\d.]+) Hz is the highest"
     level, place, above, highest = map(float, re.search(form, said).groups())
-    tried = Trial(view(sampled, loops, 0.0), TuningSpec(PI_FAMILY, 30.0, spread=0.0, automatic=False), 30.0).best()
+    tried = BandwidthTrial(view(sampled, loops, 0.0), TuningSpec(PI_FAMILY, 30.0, spread=0.0, automatic=False), 30.0).best()
     peak = peaks(loop(sampled, tried.controller.system(sampled.hardware.step)), LoopBreak.POSE).sensitivity
     assert level == pytest.approx(20.0 * np.log10(peak.value), abs=0.06)
     assert above == pytest.approx(20.0 * np.log10(peak.value / 2.0), abs=0.1)
@@ -213,7 +213,7 @@ def test_the_shipped_stage_in_all_coordinates(shipped):
     one, found = shipped
     for loops in (platform_loops(one.coordinates), modal_loops(one.coordinates, found.platform_shapes[:, list(found.platform)])):
         seen = view(one, loops, 0.02)
-        tried = Trial(seen, TuningSpec(PI_FAMILY), 25.0).best()
+        tried = BandwidthTrial(seen, TuningSpec(PI_FAMILY), 25.0).best()
         assert tried.reaches(25.0, TuningSpec(PI_FAMILY))
         placed = {round(notch.frequency, 1) for group in tried.notches for notch in group}
         assert placed <= {round(float(each), 1) for each in found.platform_frequencies}
@@ -226,7 +226,7 @@ def test_no_motion_creeps_to_its_place(shipped):
     """Of a slow disturbance integrators that pass 1 at 25 Hz leave f/25 Hz in every axis; the laws of lowest peak leave five times that."""
     one, _ = shipped
     loops, spec = platform_loops(one.coordinates), TuningSpec(PI_FAMILY, 25.0)
-    calmest, found = Trial(view(one, loops, spec.spread), spec, 25.0).best(), tune(one, loops, spec)
+    calmest, found = BandwidthTrial(view(one, loops, spec.spread), spec, 25.0).best(), tune(one, loops, spec)
     left = []
     for each in (calmest, found):
         gains = open_at(loop(one, each.controller.system(1e-4)), LoopBreak.POSE).transfer(np.array([0.25]))[0]

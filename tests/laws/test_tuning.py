@@ -16,7 +16,7 @@ from flexstage.control.plant_models.plants import Plant, plant
 from flexstage.control.robustness.stability import verdict
 from flexstage.control.robustness.stability_margins import peaks
 from flexstage.control.systems.closed import LoopBreak, loop, open_at
-from flexstage.control.tuning.attempt import Trial
+from flexstage.control.tuning.attempt import BandwidthTrial
 from flexstage.control.tuning.judge import judge_loop
 from flexstage.control.tuning.laws import FAMILIES, LQG_FAMILY
 from flexstage.control.tuning.spec import TuningSpec
@@ -61,7 +61,7 @@ def test_what_is_judged_reached_is_reached(case, kind, part):
     noise = Disturbances(1e-9, dict.fromkeys(one.gauges, 1e-10))
     spec = TuningSpec(kind, None, 2.0, 0.0, expected=noise)
     seen = view(one, loops, 0.0)
-    found = Trial(seen, spec, asked).best()
+    found = BandwidthTrial(seen, spec, asked).best()
     if found is None:
         return
     system = found.controller.system(one.hardware.step)

@@ -80,7 +80,7 @@ class Attempt:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class BandwidthTrial:
     """Controllers of a specification whose loops' gains all pass 1 at a `frequency` [Hz], as the plant that is `seen` lets them.
 
     First with the stated notches only, then with more on the modes that stand out of a loop with a gain above 0.3, as wide as does best.
@@ -91,10 +91,10 @@ class Trial:
     >>> from flexstage.control.tuning.view import view
     >>> plant = integral_loop().plant
     >>> seen = view(plant, platform_loops(plant.coordinates), 0.0)
-    >>> found = Trial(seen, TuningSpec(PI_FAMILY), 20.0).best()
+    >>> found = BandwidthTrial(seen, TuningSpec(PI_FAMILY), 20.0).best()
     >>> round(found.judgement.bandwidths[0], 1), found.notches
     (20.0, ((),))
-    >>> Trial(seen, TuningSpec(PI_FAMILY), 2000.0).reach() is None
+    >>> BandwidthTrial(seen, TuningSpec(PI_FAMILY), 2000.0).reach() is None
     True
     """
 

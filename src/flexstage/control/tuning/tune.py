@@ -11,7 +11,7 @@ from flexstage.base.finding import DesignError, Finding, require
 from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.notch import notch_findings
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.tuning.attempt import Attempt, Trial
+from flexstage.control.tuning.attempt import Attempt, BandwidthTrial
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.spec import Judgement, Tuning, TuningSpec, spec_findings
 from flexstage.control.tuning.view import View, view
@@ -56,12 +56,12 @@ def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     return Tuning(spec, best.controller, best.judgement, _sentence(spec, best, trial.frequency))
 
 
-def _at(seen: View, spec: TuningSpec, frequency: float) -> tuple[Trial, Attempt | None]:
-    trial = Trial(seen, spec, frequency)
+def _at(seen: View, spec: TuningSpec, frequency: float) -> tuple[BandwidthTrial, Attempt | None]:
+    trial = BandwidthTrial(seen, spec, frequency)
     return trial, trial.best()
 
 
-def _stiffest(trial: Trial, found: Attempt) -> Attempt:
+def _stiffest(trial: BandwidthTrial, found: Attempt) -> Attempt:
     """At the same bandwidth, within the same peak of S, more gain at rest: the lowest peak alone leaves motions that creep.
 
     Part of the peak allowed is left to what the loops do to one another.
@@ -96,7 +96,7 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
     return places
 
 
-def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[Trial | None, Attempt | None]:
+def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
     """The trial at the highest bandwidth found at which the specified margins are kept, within 0.3 %, and the controller; or None.
 
     It is the highest of `trial_bandwidths`, halved up to the next: no proof that no other controller reaches more.
@@ -111,14 +111,14 @@ def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[Trial | None, Attem
     """
     places = trial_bandwidths(seen, spec.family.steps)
     for number, place in enumerate(places):
-        trial = Trial(seen, spec, place)
+        trial = BandwidthTrial(seen, spec, place)
         found = trial.reach()
         if found is not None:
             return _bisect(trial, found, places[number - 1] if number else place)
     return None, None
 
 
-def _bisect(low: Trial, best: Attempt, high: float) -> tuple[Trial, Attempt]:
+def _bisect(low: BandwidthTrial, best: Attempt, high: float) -> tuple[BandwidthTrial, Attempt]:
     while high > _WITHIN * low.frequency:
         middle = replace(low, frequency=float(np.sqrt(low.frequency * high)))
         found = middle.reach()
@@ -141,7 +141,7 @@ def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
 
 def _no_bandwidth(seen: View, spec: TuningSpec) -> Finding:
     places = trial_bandwidths(seen, spec.family.steps)
-    best, advice = Trial(seen, spec, places[-1]).best(), _help(seen, spec, places[-1])
+    best, advice = BandwidthTrial(seen, spec, places[-1]).best(), _help(seen, spec, places[-1])
     what = f"no bandwidth is reached, {_tried(places)}; at the last {_reason(spec, best, places[-1])}"
     return Finding("tuning", what, f"{advice[:1].upper()}{advice[1:]}")
 
