@@ -25,10 +25,10 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.hysteresis.example import example_test
 from flexstage.control.hysteresis.show.figures import stack_figure
 from flexstage.control.show.figures.diagram import loop_diagram
-from flexstage.control.show.figures.frequency import Curves, open_loop_figure
+from flexstage.control.show.figures.frequency import open_loop_figure
 from flexstage.control.show.figures.noise import noise_share_figure
 from flexstage.control.show.figures.time import path_figure
-from flexstage.control.show.sections import diagram_of, noise_shares
+from flexstage.control.show.sections import diagram_of
 from flexstage.control.study.choices import Compensation, Criterion
 from flexstage.control.study.setup import Floor, GaugeSetup, LoopSetup, RasterMotion, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
@@ -425,7 +425,7 @@ def loop_frequency() -> Any:
     """Its open loops."""
     seen = _loop().curves
     assert seen is not None  # noqa: S101 (its loop is closed)
-    return open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), _loop().settled.plant.frequencies[:6])
+    return open_loop_figure(seen, _loop().settled.plant.frequencies[:6])
 
 
 def loop_raster() -> Any:
@@ -435,7 +435,7 @@ def loop_raster() -> Any:
 
 def loop_noise() -> Any:
     """Whose the noise at rest is."""
-    return noise_share_figure(noise_shares(_loop()))
+    return noise_share_figure(_loop().noise)
 
 
 DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {

@@ -22,9 +22,9 @@ from flexstage.control.plant_models.plants import plant
 from flexstage.control.robustness.stability import verdict
 from flexstage.control.robustness.stability_margins import peaks
 from flexstage.control.systems.closed import LoopBreak, loop, open_at
-from flexstage.control.tuning.attempt import Task, attempt
-from flexstage.control.tuning.laws import laws
-from flexstage.control.tuning.spec import Kind, TuningSpec
+from flexstage.control.tuning.attempt import BandwidthTrial
+from flexstage.control.tuning.laws import FAMILIES, LQG_FAMILY, PI_FAMILY, PID_FAMILY, RESONANT_FAMILY
+from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import resonances, view
 from flexstage.models.ideal import ideal
@@ -57,7 +57,7 @@ def _peak(rate: float, omega: float, ratio: float = 0.01) -> float:
 @pytest.mark.parametrize("allowed", [1.5, 2.0, 4.0])
 def test_integral_control_reaches_what_an_oscillator_lets_it(oscillator, allowed):
     """The highest bandwidth is that whose peak of S is the one allowed, found here by halving: near 2 zeta f (1 - 1/M)."""
-    found = tune(oscillator, platform_loops(oscillator.coordinates), Task(Kind.PI, TuningSpec(None, allowed, 0.0), automatic=False))
+    found = tune(oscillator, platform_loops(oscillator.coordinates), TuningSpec(PI_FAMILY, None, allowed, 0.0, automatic=False))
     omega = 2.0 * np.pi * oscillator.frequencies[0]
     low, high = 0.0, 0.02 * omega
     for _ in range(50):
@@ -73,20 +73,20 @@ def test_integral_control_reaches_what_an_oscillator_lets_it(oscillator, allowed
 def test_notches_and_modes_that_are_off(oscillator):
     """A notch on the mode gives many times the bandwidth; the more the mode may be off, the less."""
     loops = platform_loops(oscillator.coordinates)
-    bare = tune(oscillator, loops, Task(Kind.PI, TuningSpec(spread=0.0), automatic=False)).bandwidth
-    notched = [tune(oscillator, loops, Task(Kind.PI, TuningSpec(spread=spread))) for spread in (0.0, 0.02, 0.05)]
+    bare = tune(oscillator, loops, TuningSpec(PI_FAMILY, spread=0.0, automatic=False)).bandwidth
+    notched = [tune(oscillator, loops, TuningSpec(PI_FAMILY, spread=spread)) for spread in (0.0, 0.02, 0.05)]
     reached = [each.bandwidth for each in notched]
     assert reached[0] > 20.0 * bare
     assert reached[0] > 1.2 * reached[1] > 1.2 * reached[2] > 3.0 * bare
-    assert all(abs(each.frequency / oscillator.frequencies[0] - 1.0) < 1e-6 for found in notched for each in found.notches[0])
+    assert all(abs(each.frequency / oscillator.frequencies[0] - 1.0) < 1e-6 for found in notched for each in found.controller.notches[0])
 
 
-@pytest.mark.parametrize("kind", list(Kind))
+@pytest.mark.parametrize("kind", list(FAMILIES))
 def test_what_is_asked_for_is_reached(sampled, kind):
     """Every kind: the loop's own gain is 1 where asked, the verdict is stable, the peak of S that of the margins."""
-    asked = {Kind.PI: 150.0, Kind.PID: 200.0, Kind.RESONANT: 30.0, Kind.LQG: 200.0}[kind]
+    asked = {"pi": 150.0, "pid": 200.0, "resonant": 30.0, "lqg": 200.0}[kind]
     noise = Disturbances(1e-9, dict.fromkeys(sampled.gauges, 1e-11))
-    found = tune(sampled, platform_loops(sampled.coordinates), Task(kind, TuningSpec(asked, 2.0, 0.0), expected=noise))
+    found = tune(sampled, platform_loops(sampled.coordinates), TuningSpec(FAMILIES[kind], asked, 2.0, 0.0, expected=noise))
     closed = loop(sampled, found.controller.system(sampled.hardware.step))
     assert verdict(closed).stable
     assert abs(open_at(closed, LoopBreak.POSE).transfer(np.array([asked]))[0, 0, 0]) == pytest.approx(1.0, rel=0.01)
@@ -101,11 +101,11 @@ def test_the_reason_has_the_numbers(sampled):
     """Asked too much: the peak and the highest that is reached are those of the margins, the notch's frequency that of the mode."""
     loops = platform_loops(sampled.coordinates)
     with pytest.raises(DesignError) as error:
-        tune(sampled, loops, Task(Kind.PI, TuningSpec(30.0, 2.0, 0.0), automatic=False))
+        tune(sampled, loops, TuningSpec(PI_FAMILY, 30.0, 2.0, 0.0, automatic=False))
     said = str(error.value)
     form = r"at 30 Hz the peak of S with PI is ([\d.]+) dB at (\d+) Hz, ([\d.]+) dB above the 6.0 dB allowed; ([\d.]+) Hz is the highest"
     level, place, above, highest = map(float, re.search(form, said).groups())
-    tried = attempt(view(sampled, loops, 0.0), Task(Kind.PI, TuningSpec(30.0, spread=0.0), automatic=False), 30.0)
+    tried = BandwidthTrial(view(sampled, loops, 0.0), TuningSpec(PI_FAMILY, 30.0, spread=0.0, automatic=False), 30.0).best()
     peak = peaks(loop(sampled, tried.controller.system(sampled.hardware.step)), LoopBreak.POSE).sensitivity
     assert level == pytest.approx(20.0 * np.log10(peak.value), abs=0.06)
     assert above == pytest.approx(20.0 * np.log10(peak.value / 2.0), abs=0.1)
@@ -116,7 +116,7 @@ def test_the_reason_has_the_numbers(sampled):
         assert (peaks(loop(sampled, control), LoopBreak.POSE).sensitivity.value <= 2.0 * 1.01) is good
     notch, better = map(float, re.search(r"with a notch at ([\d.]+) Hz ([\d.]+) Hz is reached", said).groups())
     assert notch == pytest.approx(sampled.frequencies[1], abs=0.06)
-    assert tune(sampled, loops, Task(Kind.PI, TuningSpec(0.97 * better, 2.0, 0.0))).bandwidth == pytest.approx(0.97 * better, rel=0.01)
+    assert tune(sampled, loops, TuningSpec(PI_FAMILY, 0.97 * better, 2.0, 0.0)).bandwidth == pytest.approx(0.97 * better, rel=0.01)
 
 
 def _rate(tried, highest: float) -> float:
@@ -126,7 +126,7 @@ def _rate(tried, highest: float) -> float:
 def test_an_unstable_attempt_is_called_so(sampled):
     """Beyond the edge of stability the growth is said; where hold and delay take part, faster samples are advised."""
     with pytest.raises(DesignError, match=r"with PI is unstable: it grows by .* 1/s; .* is the highest found with PI") as error:
-        tune(sampled, platform_loops(sampled.coordinates), Task(Kind.PI, TuningSpec(900.0, spread=0.0), automatic=False))
+        tune(sampled, platform_loops(sampled.coordinates), TuningSpec(PI_FAMILY, 900.0, spread=0.0, automatic=False))
     assert "hold and delay take 24 deg at 900 Hz" in str(error.value)  # 360 x 900 Hz x (50 + 25) us
 
 
@@ -144,16 +144,16 @@ def test_stages_of_fewer_freedoms(name):
     if len(one.actuators) == count:
         kinds.append(actuator_loops(one.coordinates))
     for loops in kinds:
-        tuning = tune(one, loops, Task(Kind.PI, TuningSpec(0.1 * first)))
+        tuning = tune(one, loops, TuningSpec(PI_FAMILY, 0.1 * first))
         assert tuning.bandwidth == pytest.approx(0.1 * first, rel=0.01)
         assert verdict(loop(one, tuning.controller.system(one.hardware.step))).stable
 
 
 @pytest.mark.parametrize("step", [None, 1e-3])
-@pytest.mark.parametrize("kind", [Kind.PI, Kind.PID, Kind.RESONANT])
+@pytest.mark.parametrize("kind", [PI_FAMILY, PID_FAMILY, RESONANT_FAMILY])
 def test_laws_have_the_gain_that_is_left(kind, step):
     """|C g| = 1 at the frequency, sampled too, where Tustin's rule bends frequencies by a tenth and more."""
-    found = laws(kind, Place(180.0, 0.3 - 0.4j, 0.9, 60.0), step)
+    found = kind.laws(Place(180.0, 0.3 - 0.4j, 0.9, 60.0), step)
     assert len(found) > 4
     for law in found:
         response = law.system(step).transfer(np.array([180.0]))[0, 0]
@@ -182,13 +182,13 @@ def test_resonances_are_the_modes_that_show(oscillator, sampled):
 
 
 BAD = {
-    "bandwidth: 12000 Hz is not below half the sampling rate, 10000 Hz": Task(Kind.PI, TuningSpec(12e3)),
-    "bandwidth: it is -5 Hz": Task(Kind.PI, TuningSpec(-5.0)),
-    "the highest peak of S allowed is 0.9": Task(Kind.PI, TuningSpec(5.0, 0.9)),
-    "modes are to be off by up to -0.1": Task(Kind.PI, TuningSpec(5.0, 2.0, -0.1)),
-    "notch at 1200 Hz: it is on no mode: between those at 875": Task(Kind.PI, TuningSpec(5.0), (Notch(1200.0),)),
-    "1 are given for LQG, whose observer knows the modes": Task(Kind.LQG, TuningSpec(5.0), (Notch(875.0),)),
-    "the noise its observer shall expect is not stated": Task(Kind.LQG, TuningSpec(5.0)),
+    "bandwidth: 12000 Hz is not below half the sampling rate, 10000 Hz": TuningSpec(PI_FAMILY, 12e3),
+    "bandwidth: it is -5 Hz": TuningSpec(PI_FAMILY, -5.0),
+    "the highest peak of S allowed is 0.9": TuningSpec(PI_FAMILY, 5.0, 0.9),
+    "modes are to be off by up to -0.1": TuningSpec(PI_FAMILY, 5.0, 2.0, -0.1),
+    "notch at 1200 Hz: it is on no mode: between those at 875": TuningSpec(PI_FAMILY, 5.0, notches=(Notch(1200.0),)),
+    "1 are given for LQG, whose observer knows the modes": TuningSpec(LQG_FAMILY, 5.0, notches=(Notch(875.0),)),
+    "the noise its observer shall expect is not stated": TuningSpec(LQG_FAMILY, 5.0),
 }
 
 
@@ -213,8 +213,8 @@ def test_the_shipped_stage_in_all_coordinates(shipped):
     one, found = shipped
     for loops in (platform_loops(one.coordinates), modal_loops(one.coordinates, found.platform_shapes[:, list(found.platform)])):
         seen = view(one, loops, 0.02)
-        tried = attempt(seen, Task(Kind.PI, TuningSpec()), 25.0)
-        assert tried.reaches(25.0, TuningSpec())
+        tried = BandwidthTrial(seen, TuningSpec(PI_FAMILY), 25.0).best()
+        assert tried.reaches(25.0, TuningSpec(PI_FAMILY))
         placed = {round(notch.frequency, 1) for group in tried.notches for notch in group}
         assert placed <= {round(float(each), 1) for each in found.platform_frequencies}
         closed = loop(one, tried.controller.system(1e-4))
@@ -225,8 +225,8 @@ def test_the_shipped_stage_in_all_coordinates(shipped):
 def test_no_motion_creeps_to_its_place(shipped):
     """Of a slow disturbance integrators that pass 1 at 25 Hz leave f/25 Hz in every axis; the laws of lowest peak leave five times that."""
     one, _ = shipped
-    loops, task = platform_loops(one.coordinates), Task(Kind.PI, TuningSpec(25.0))
-    calmest, found = attempt(view(one, loops, task.spec.spread), task, 25.0), tune(one, loops, task)
+    loops, spec = platform_loops(one.coordinates), TuningSpec(PI_FAMILY, 25.0)
+    calmest, found = BandwidthTrial(view(one, loops, spec.spread), spec, 25.0).best(), tune(one, loops, spec)
     left = []
     for each in (calmest, found):
         gains = open_at(loop(one, each.controller.system(1e-4)), LoopBreak.POSE).transfer(np.array([0.25]))[0]
@@ -238,7 +238,9 @@ def test_no_motion_creeps_to_its_place(shipped):
 def test_a_search_tries_no_law_twice_at_a_frequency(sampled, monkeypatch) -> None:
     """One width for all modes comes after the loops' own choices, stronger integrators after the lowest peak: with the same laws."""
     tried = []
-    monkeypatch.setattr("flexstage.control.tuning.attempt.laws", lambda *asked: tried.append(asked) or laws(*asked))
-    found = tune(sampled, platform_loops(sampled.coordinates), Task(Kind.PI, TuningSpec()))
-    assert len(found.notches[0]) > 0
+    counted = replace(PI_FAMILY, laws=lambda *asked: tried.append(asked) or PI_FAMILY.laws(*asked))
+    for module in ("attempt", "tune"):
+        monkeypatch.setattr(f"flexstage.control.tuning.{module}.PI_FAMILY", counted)
+    found = tune(sampled, platform_loops(sampled.coordinates), TuningSpec(counted))
+    assert len(found.controller.notches[0]) > 0
     assert len(tried) == len(set(tried))

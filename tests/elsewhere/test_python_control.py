@@ -27,10 +27,10 @@ from flexstage.control.systems.curves import sensitivity
 from flexstage.control.systems.exchange import from_control, to_control
 from flexstage.control.systems.norm import peak
 from flexstage.control.systems.system import System, select
-from flexstage.control.tuning.find import Asked, find
+from flexstage.control.tuning.find import find
+from flexstage.control.tuning.laws import PI_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.control.tuning.search_spec import SearchSpec
-from flexstage.control.tuning.spec import Kind
+from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.white_noise import mean_squares
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
@@ -122,13 +122,17 @@ def test_margins_of_samples(gain):
     assert np.allclose(found * factors, -1.0, atol=CLOSE)
 
 
-def _found_by_search(plant_of_samples, spec: SearchSpec) -> Loop:
-    tuned = find(plant_of_samples, platform_loops(plant_of_samples.coordinates), Asked(Kind.PI, spec, {}))
+def _found_by_search(plant_of_samples, spec: TuningSpec) -> Loop:
+    tuned = find(plant_of_samples, platform_loops(plant_of_samples.coordinates), spec)
     return loop(plant_of_samples, tuned.controller.system(plant_of_samples.hardware.step))
 
 
 @pytest.mark.parametrize(
-    "spec", [SearchSpec(), pytest.param(SearchSpec(objective=TuningObjective.REJECTION, gain=0.1), marks=pytest.mark.full)]
+    "spec",
+    [
+        TuningSpec(PI_FAMILY, objective=TuningObjective.BALANCE),
+        pytest.param(TuningSpec(PI_FAMILY, objective=TuningObjective.REJECTION, gain=0.1), marks=pytest.mark.full),
+    ],
 )
 def test_margins_of_what_a_search_finds(spec):
     """Gain, phase, delay and peak of S from their own responses on a dense grid, within 1e-3; and their poles at the edge of gain."""

@@ -13,7 +13,7 @@ from scipy.linalg import expm
 from flexstage.base.finding import DesignError
 from flexstage.control.robustness.disk import disk_margins
 from flexstage.control.robustness.stability import require_stable, verdict
-from flexstage.control.robustness.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
+from flexstage.control.robustness.stability_margins import bandwidths, crosstalk, margins, peaks
 from flexstage.control.systems.closed import LoopBreak, loop, open_at, open_everywhere
 from flexstage.control.systems.curves import sensitivity
 from flexstage.control.systems.system import select
@@ -154,35 +154,6 @@ def test_margins_end_at_the_edge(seed, rate, cut):
 
 
 @given(SEEDS)
-@examples(2, 60)
-def test_delay_margin_ends_at_the_edge(seed):
-    """All commands later by the margin, exactly in the hold: a pole is on the circle; a little less, and all decay."""
-    closed = stable_loop(seed)
-    found = delay_margin(closed)
-    if not found.value < 0.06:  # more strokes under way than eigenvalues are wanted of
-        return
-
-    def growth(later):
-        hardware = replace(closed.plant.hardware, delay=closed.plant.hardware.delay + later)
-        return loop(replace(closed.plant, hardware=hardware), closed.controller).system.growth
-
-    assert abs(growth(found.value)) < 1e-5
-    assert growth(0.98 * found.value) < 0.0 < growth(1.01 * found.value)
-
-
-@given(SEEDS)
-@examples(5, 100)
-def test_delay_margin_of_a_continuous_loop(seed):
-    closed = stable_loop(seed, rate=None)
-    found = delay_margin(closed)
-    if np.isfinite(found.value):
-        turned = open_at(closed, LoopBreak.POSE).transfer(np.array([found.frequency]))[0] * np.exp(
-            -2j * np.pi * found.frequency * found.value
-        )
-        assert np.min(np.abs(np.linalg.eigvals(turned) + 1.0)) < 1e-7
-
-
-@given(SEEDS)
 @examples(7, 200)
 def test_gain_of_all_ends_at_the_edge(seed):
     closed = random_loop(seed)
@@ -252,7 +223,6 @@ def test_unstable_loops_have_no_margins():
     for ask in (
         bandwidths,
         crosstalk,
-        delay_margin,
         lambda one: margins(one, LoopBreak.POSE),
         lambda one: disk_margins(one, LoopBreak.POSE),
     ):

@@ -16,6 +16,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
 from flexstage.control.controllers.decentralised import Decentralised, loop_systems
+from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
@@ -45,12 +46,13 @@ from flexstage.control.study.setup import (
 )
 from flexstage.control.study.study import loop_study
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
-from flexstage.control.tuning.find import Asked, find
+from flexstage.control.tuning.find import find
 from flexstage.control.tuning.fit import Bounds
+from flexstage.control.tuning.laws import PI_FAMILY, RESONANT_FAMILY
+from flexstage.control.tuning.objective import TuningObjective
 from flexstage.control.tuning.search import Field, Found, Joint, Variant, beside_one_another, field, loud_enough, search, variants
-from flexstage.control.tuning.search_spec import SearchSpec
 from flexstage.control.tuning.shape import Shape
-from flexstage.control.tuning.spec import Kind, Tuning
+from flexstage.control.tuning.spec import Tuning, TuningSpec
 from flexstage.control.tuning.view import view
 
 
@@ -65,10 +67,14 @@ def closed(plant: Plant, tuned: Tuning, offset: float) -> Loop:
     return loop(one, replace(tuned.controller.system(plant.hardware.step), step=one.hardware.step))
 
 
+def specified(family: Family = PI_FAMILY, **required: float) -> TuningSpec:
+    return TuningSpec(family, objective=TuningObjective.BALANCE, **required)
+
+
 @cache
-def found(spec: SearchSpec) -> tuple[Plant, Tuning]:
+def found(**required: float) -> tuple[Plant, Tuning]:
     plant = integral_loop().plant
-    return plant, find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, spec, {}))
+    return plant, find(plant, platform_loops(plant.coordinates), specified(**required))
 
 
 @pytest.mark.parametrize("law", [PI(0.7, 300.0), PID(0.7, 300.0, 1e-3, 900.0)])
@@ -111,9 +117,10 @@ def test_what_passes_the_bounds_has_exact_derivatives(count):
 
     shape = Shape(1, 5e-4)
     points = tuple(shape.point(PI(0.3 + 0.02 * loop, 90.0), (Notch(99.0, 0.05, 0.8),)) + 0.02 * rng.normal(size=5) for loop in range(count))
-    spec = SearchSpec(sensitivity=1.2, overshoot=0.02)
+    spec, some = specified(sensitivity=1.2, overshoot=0.02), integral_loop().plant
     field = Field(
-        spec, (Variant(0.0, 1.0, 0.0, 1.2),) * 2, np.stack([frequencies] * 2), np.stack([plants(frequencies)] * 2), lines,
+        view(some, platform_loops(some.coordinates), 0.0), spec,
+        (Variant(0.0, 1.0, 0.0, 1.2),) * 2, np.stack([frequencies] * 2), np.stack([plants(frequencies)] * 2), lines,
         plants(lines)[None],
         rng.normal(size=(60, count, 2)), np.ones((60, count)), tuple(range(count)),
     )  # fmt: skip
@@ -129,7 +136,7 @@ def test_what_passes_the_bounds_has_exact_derivatives(count):
 
 def test_the_peak_of_s_is_kept_at_every_offset_of_the_modes():
     """The exact peak (no grid of frequencies), at offsets that the search did not look at."""
-    plant, tuned = found(SearchSpec())
+    plant, tuned = found()
     assert tuned.judgement.stable
     for offset in np.linspace(-0.02, 0.02, 7):
         assert peaks(closed(plant, tuned, offset), LoopBreak.POSE).sensitivity.value < 2.005
@@ -137,7 +144,7 @@ def test_the_peak_of_s_is_kept_at_every_offset_of_the_modes():
 
 
 def test_a_delay_margin_is_held():
-    plant, tuned = found(SearchSpec(delay_margin=1e-3))
+    plant, tuned = found(delay_margin=1e-3)
     assert margins(closed(plant, tuned, 0.0), LoopBreak.POSE).of("x").delay.value > 1e-3
 
 
@@ -161,7 +168,7 @@ def test_a_delay_margin_is_held_in_every_loop_of_the_shipped_stage(bandwidth):
 def test_delays_are_tried_at_every_turn_up_to_the_one_asked_for():
     """A mode far above the crossing may be unstable with half the delay, and stable with all of it."""
     later, frequencies = 3e-4, np.array([10.0, 1485.0])
-    late = [-np.angle(each.factor(frequencies)) for each in variants(SearchSpec(delay_margin=later)) if each.later]
+    late = [-np.angle(each.factor(frequencies)) for each in variants(specified(delay_margin=later)) if each.later]
     assert np.ptp([one[0] for one in late]) < 1e-12  # 10 Hz turns by 1 deg at most
     turned = np.sort([one[1] for one in late])
     assert np.max(np.diff(turned)) <= 0.25 * np.pi + 1e-9
@@ -169,20 +176,20 @@ def test_delays_are_tried_at_every_turn_up_to_the_one_asked_for():
 
 
 def test_the_same_search_finds_the_same():
-    plant, tuned = found(SearchSpec())
-    again = find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, SearchSpec(), {}))
-    assert (again.controller.laws, again.notches) == (tuned.controller.laws, tuned.notches)
+    plant, tuned = found()
+    again = find(plant, platform_loops(plant.coordinates), specified())
+    assert (again.controller.laws, again.controller.notches) == (tuned.controller.laws, tuned.controller.notches)
 
 
 def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     with pytest.raises(DesignError, match=r"rejection with an overshoot of 20 % at most"):
-        found(SearchSpec(rejection=4000.0))
+        found(rejection=4000.0)
     with pytest.raises(DesignError, match="no loop that rejects so far bears it"):
-        found(SearchSpec(rejection=500.0, delay_margin=1e-3))
+        found(rejection=500.0, delay_margin=1e-3)
     monkeypatch.setattr("flexstage.control.tuning.find.search", lambda *_: None)
     monkeypatch.setattr("flexstage.control.tuning.find.advance", lambda *_: None)
     with pytest.raises(DesignError, match=r"settling: the nearest comes to .* ms, and 0.2 ms is asked for"):  # the tuner's own loop
-        found(SearchSpec(settling=2e-4))
+        found(settling=2e-4)
 
     def refuse(*_):
         raise DesignError([Finding("tuning", "no bandwidth is reached, 27 tried", "Try PID")])
@@ -191,7 +198,7 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     with pytest.raises(
         DesignError, match=r"no PI within .* that settles within 0.2 ms was found; without a search no bandwidth is reached"
     ):
-        found(SearchSpec(settling=2e-4))
+        found(settling=2e-4)
 
 
 def shipped(controller: ControllerSetup) -> tuple[ResolvedSetup, np.ndarray]:
@@ -258,8 +265,8 @@ def test_starts_of_loops_that_are_searched_together_stand_beside_one_another():
 def test_noise_gives_way_where_it_alone_keeps_a_loop_from_what_is_wanted():
     plant = integral_loop().plant
     seen = view(plant, platform_loops(plant.coordinates), 0.0)
-    free = field(seen, SearchSpec(spread=0.0), {})
-    found = search(seen, free, Kind.PI)
+    free = field(seen, specified(spread=0.0))
+    found = search(free, PI_FAMILY)
     assert found is not None
     wanted = [0.8 * each for each in found.reached]
     quiet = replace(free, allowed=tuple(1e-3 * each for each in found.noises))
@@ -276,7 +283,7 @@ def test_noise_gives_way_where_it_alone_keeps_a_loop_from_what_is_wanted():
 def test_a_search_looks_closer_where_a_peak_was_passed():
     plant = integral_loop().plant
     seen = view(plant, platform_loops(plant.coordinates), 0.02, (0.0, -0.02, 0.02, -0.05, 0.05))
-    for within, most in ((field(seen, SearchSpec(), {}), 0.2), (field(seen, SearchSpec(), {}, (300.0,)), 0.006)):
+    for within, most in ((field(seen, specified()), 0.2), (field(seen, specified(), (300.0,)), 0.006)):
         for variant, frequencies in zip(within.variants, within.frequencies, strict=True):
             place = np.searchsorted(frequencies, 301.0 * (1.0 + variant.offset))
             assert frequencies[place] / frequencies[place - 1] - 1.0 < most
@@ -345,7 +352,7 @@ def test_a_plant_that_is_unstable_by_itself_is_refused():
     plant = integral_loop().plant
     pushed = replace(plant, system=replace(plant.system, A=plant.system.A + 400.0 * np.eye(len(plant.system.A))))
     with pytest.raises(DesignError, match="the stage by itself is unstable: it grows by"):
-        find(pushed, platform_loops(plant.coordinates), Asked(Kind.PI, SearchSpec(), {}))
+        find(pushed, platform_loops(plant.coordinates), specified())
 
 
 def test_a_controller_of_another_stage_is_refused_by_the_loops_it_names():
@@ -361,6 +368,6 @@ def test_goals_that_contradict_one_another_are_all_said_before_anything_is_searc
         find(
             plant,
             platform_loops(plant.coordinates),
-            Asked(Kind.RESONANT, SearchSpec(rejection=500.0, settling=1e-3, delay_margin=1e-3), {}),
+            specified(RESONANT_FAMILY, rejection=500.0, settling=1e-3, delay_margin=1e-3),
         )
     assert [each.where for each in told.value.findings] == ["controller.goal"] * 3

@@ -21,9 +21,10 @@ from flexstage.control.study.compare import rival as rival_of
 from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, NotchSetup, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.systems.closed import LoopBreak, loop
-from flexstage.control.tuning.outcome import Outcome, bench, outcome
+from flexstage.control.tuning.laws import PI_FAMILY
+from flexstage.control.tuning.outcome import Outcome, outcome
 from flexstage.control.tuning.search import field
-from flexstage.control.tuning.search_spec import SearchSpec
+from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.view import view
 from flexstage.show.table import Mark
 
@@ -75,7 +76,7 @@ def test_what_belongs_to_one_controller_is_refused(tmp_path, capsys, monkeypatch
 
 def outcome_of(study: LoopStudy, gain: float) -> Outcome:
     seen = view(study.plant, platform_loops(study.plant.coordinates), 0.0)
-    return outcome(bench(seen, field(seen, SearchSpec(spread=0.0), study.settled.floor)), study.controller.system, gain)
+    return outcome(field(seen, TuningSpec(PI_FAMILY, spread=0.0, floor=study.settled.floor)), study.controller.system, gain)
 
 
 def test_what_is_read_off_responses_is_what_the_whole_loop_says():

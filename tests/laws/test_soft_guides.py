@@ -23,13 +23,12 @@ from flexstage.control.study.setup import ControllerSetup, GoalSetup, LoopSetup
 from flexstage.control.systems.sampling import discretise
 from flexstage.control.systems.system import System
 from flexstage.control.tuning import search
-from flexstage.control.tuning.attempt import Task
-from flexstage.control.tuning.find import Asked, find
+from flexstage.control.tuning.find import find
+from flexstage.control.tuning.laws import LQG_FAMILY, PID_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.control.tuning.outcome import bench, outcome
+from flexstage.control.tuning.outcome import outcome
 from flexstage.control.tuning.search import field, variants
-from flexstage.control.tuning.search_spec import SearchSpec
-from flexstage.control.tuning.spec import Kind, Tuning, TuningSpec
+from flexstage.control.tuning.spec import Tuning, TuningSpec
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import view
 from flexstage.control.tuning.weigh import merit
@@ -58,7 +57,7 @@ def guided(stiffness: float, rate: float = 8e3, late: float = 1.0) -> tuple[Plan
 def pid(stiffness: float, goal: TuningSpec, late: float = 1.0) -> tuple[Tuning, np.ndarray]:
     """The tuned loop, with k_p [N/m], k_i [N/(m s)], k_d [N s/m], where it passes 1 [Hz] and its peak of S."""
     one, unit = guided(stiffness, late=late)
-    found = tune(one, platform_loops(one.coordinates), Task(Kind.PID, goal))
+    found = tune(one, platform_loops(one.coordinates), goal)
     (law,) = found.controller.laws
     gains = unit * np.array([law.proportional, law.integral, law.derivative])
     return found, np.array([*gains, found.bandwidth, found.judgement.peak])
@@ -67,9 +66,9 @@ def pid(stiffness: float, goal: TuningSpec, late: float = 1.0) -> tuple[Tuning, 
 @pytest.mark.parametrize(("late", "sensitivity"), [(1.0, 2.0), pytest.param(0.3, 1.7, marks=pytest.mark.full), (2.5, 2.2)])
 def test_a_guide_far_below_the_crossing_changes_nothing(late, sensitivity):
     """From a free mass to 1e4 N/m: gains in newtons per metre, crossing and peak of S stay within 2 %."""
-    _, free = pid(0.0, TuningSpec(None, sensitivity), late)
+    _, free = pid(0.0, TuningSpec(PID_FAMILY, None, sensitivity), late)
     for stiffness in (1e-3, 1.0, 1e2, 1e4) if FULL else (1e-3, 1e4):
-        found, numbers = pid(stiffness, TuningSpec(None, sensitivity), late)
+        found, numbers = pid(stiffness, TuningSpec(PID_FAMILY, None, sensitivity), late)
         assert guided(stiffness)[0].frequencies[0] < 0.1 * found.bandwidth
         np.testing.assert_allclose(numbers, free, rtol=0.02)
 
@@ -79,7 +78,7 @@ def test_a_free_mass_by_closed_forms():
 
     A grid of PID laws on it, two zeros apart, of Tustin's rule too, reaches no more than a fifth more.
     """
-    found, (*gains, crossing, peak) = pid(0.0, TuningSpec(None, 2.0, 0.0))
+    found, (*gains, crossing, peak) = pid(0.0, TuningSpec(PID_FAMILY, None, 2.0, 0.0))
     step, corner = 1.0 / 8e3, found.controller.laws[0].filter
     frequencies = np.geomspace(0.5, 3.99e3, 3000)
     left = _sensitivity(np.array(gains), corner, step, frequencies)
@@ -124,7 +123,7 @@ def _sensitivity(gains: np.ndarray, corner: float, step: float, frequencies: np.
 
 def test_what_is_tried_depends_on_rate_and_delay_alone():
     """The same mass at twice the rate, as many samples late: twice the crossing, the same peak."""
-    once, twice = (tune(one, platform_loops(one.coordinates), Task(Kind.PID, TuningSpec())) for one, _ in (guided(1.0), guided(1.0, 16e3)))
+    once, twice = (tune(one, platform_loops(one.coordinates), TuningSpec(PID_FAMILY)) for one, _ in (guided(1.0), guided(1.0, 16e3)))
     assert twice.bandwidth == pytest.approx(2.0 * once.bandwidth, rel=0.005)
     assert twice.judgement.peak == pytest.approx(once.judgement.peak, rel=0.005)
 
@@ -216,14 +215,14 @@ def test_a_search_that_finds_nothing_better_returns_what_it_began_from(monkeypat
     """Also where what it finds is worse."""
     one, _ = guided(100.0)
     loops = platform_loops(one.coordinates)
-    plain = tune(one, loops, Task(Kind.PID, TuningSpec()))
+    plain = tune(one, loops, TuningSpec(PID_FAMILY))
     worse = replace(plain.controller.laws[0], proportional=0.1 * plain.controller.laws[0].proportional)
     known = search.known_loops
     monkeypatch.setattr(
         "flexstage.control.tuning.find.advance",
-        lambda seen, within, controller: known(seen, within, replace(controller, laws=(worse,))),
+        lambda within, controller: known(within, replace(controller, laws=(worse,))),
     )
-    found = find(one, loops, Asked(Kind.PID, SearchSpec(objective=TuningObjective.REJECTION), {}))
+    found = find(one, loops, TuningSpec(PID_FAMILY, objective=TuningObjective.REJECTION))
     assert found.controller.laws == plain.controller.laws
     assert "no better one was found" in found.reason
 
@@ -238,7 +237,7 @@ def test_linear_quadratic_control_does_not_depend_on_a_soft_guide(late):
     for stiffness in (0.0, 1e-3, 1e3, 1e4):
         one, _ = guided(stiffness, late=late)
         noise = Disturbances(1e-9, {"S": NOISE})
-        tuned = tune(one, platform_loops(one.coordinates), Task(Kind.LQG, TuningSpec(), expected=noise))
+        tuned = tune(one, platform_loops(one.coordinates), TuningSpec(LQG_FAMILY, expected=noise))
         found.append([tuned.bandwidth, tuned.judgement.peak])
         assert tuned.judgement.peak <= 2.0
         assert tuned.judgement.growth < -0.2 * tuned.bandwidth  # observers too are not slower by decades than the loop
@@ -251,9 +250,7 @@ def test_linear_quadratic_control_reaches_as_far_as_a_grid_of_riccati_solutions(
     """Regulators and observers by scipy's discrete equation, on a model made here: none of the grid within 6 dB crosses higher."""
     stiffness, step = 100.0, 1.0 / 8e3
     one, _ = guided(stiffness)
-    tuned = tune(
-        one, platform_loops(one.coordinates), Task(Kind.LQG, TuningSpec(None, 2.0, 0.0), expected=Disturbances(1e-9, {"S": NOISE}))
-    )
+    tuned = tune(one, platform_loops(one.coordinates), TuningSpec(LQG_FAMILY, None, 2.0, 0.0, expected=Disturbances(1e-9, {"S": NOISE})))
     omega = np.sqrt(stiffness / MASS)
     flow = np.array([[0.0, 1.0, 0.0], [-(omega**2), -2.0 * RATIO * omega, 1.0 / MASS], [0.0, 0.0, 0.0]])
     held = scipy.linalg.expm(flow * step)
@@ -294,10 +291,11 @@ def test_weights_by_search_serve_the_aim_no_worse_than_those_they_begin_from(aim
     """By the merit of both, from responses."""
     one, _ = guided(100.0)
     loops, noise = platform_loops(one.coordinates), Disturbances(1e-9, {"S": NOISE})
-    plain = tune(one, loops, Task(Kind.LQG, TuningSpec(), expected=noise))
-    found = find(one, loops, Asked(Kind.LQG, SearchSpec(objective=aim), {}, expected=noise))
-    seen = view(one, loops, 0.02, tuple(dict.fromkeys(each.offset for each in variants(SearchSpec()))))
-    tried = bench(seen, field(seen, SearchSpec(objective=aim), {}, fast=plain.bandwidth))
-    merits = [merit(SearchSpec(objective=aim), outcome(tried, each.controller.system(seen.step))) for each in (plain, found)]
+    plain = tune(one, loops, TuningSpec(LQG_FAMILY, expected=noise))
+    spec = TuningSpec(LQG_FAMILY, objective=aim, expected=noise)
+    found = find(one, loops, spec)
+    seen = view(one, loops, 0.02, tuple(dict.fromkeys(each.offset for each in variants(spec))))
+    within = field(seen, spec, fast=plain.bandwidth)
+    merits = [merit(spec, outcome(within, each.controller.system(seen.step))) for each in (plain, found)]
     assert merits[1] >= merits[0]
     assert found.judgement.peak <= 2.0

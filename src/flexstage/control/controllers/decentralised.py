@@ -16,7 +16,6 @@ from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.system import System, select, side_by_side
-from flexstage.models.linear.model import Channel
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +56,7 @@ class Decentralised(CheckedFields):
         (('error.x', 'reference.x', 'applied.B'), ('command.B',))
         """
         chains = loop_systems(self, step)
-        loops, count = self.loops, len(chains)
+        loops, coordinates, count = self.loops, self.loops.coordinates, len(chains)
         A = side_by_side([each.A for each in chains])
         size = sum(len(each.A) for each in chains)
         entries = [_block_columns([each.B[:, [column]] for each in chains], size) for column in range(3)]
@@ -70,13 +69,13 @@ class Decentralised(CheckedFields):
             B=np.hstack([entry @ map_ for entry, map_ in zip(entries, seen, strict=True)]),
             C=loops.drive @ exit_,
             D=np.hstack([loops.drive @ matrix @ map_ for matrix, map_ in zip(direct, seen, strict=True)]),
-            inputs=(*channels("error", loops.coordinates), *channels("pose", loops.coordinates), *_strokes("applied", loops.coordinates)),
-            outputs=_strokes("command", loops.coordinates),
+            inputs=(*coordinates.motions("error."), *coordinates.motions("pose."), *coordinates.commands("applied.")),
+            outputs=coordinates.commands("command."),
             step=step,
         )
-        poses = [f"pose.{name}" for name in loops.coordinates.names] if any(np.any(each.B[:, 1]) for each in chains) and count else []
-        whole = with_feedforward(_drop_unused_poses(found, poses), self.feedforward, loops.coordinates)
-        return with_prefilters(whole, self.prefilters, loops.sense, loops.coordinates)
+        poses = [f"pose.{name}" for name in coordinates.names] if any(np.any(each.B[:, 1]) for each in chains) and count else []
+        whole = with_feedforward(_drop_unused_poses(found, poses), self.feedforward, coordinates)
+        return with_prefilters(whole, self.prefilters, loops.sense, coordinates)
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
@@ -113,22 +112,6 @@ def _filtered(law: System, notch: System) -> System:
     return replace(law, A=A, B=B, C=np.hstack([notch.D @ law.C, notch.C]), D=notch.D @ law.D)
 
 
-def channels(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
-    """Channels `kind.<c>` of all coordinates.
-
-    >>> from flexstage.control.plant_models.coordinates import coordinates
-    >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.models.ideal import ideal
-    >>> channels("error", coordinates(ideal(parallelogram())))
-    (Channel(name='error.x', unit='m'),)
-    """
-    return tuple(Channel(f"{kind}.{name}", unit) for name, unit in zip(coordinates.names, coordinates.units, strict=True))
-
-
-def _strokes(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
-    return coordinates.commands(f"{kind}.")
-
-
 def with_feedforward(control: System, gains: Array | None, coordinates: Coordinates) -> System:
     """The controller whose commands have `gains` (n, f) times the reference added; inputs `reference.<c>` before what was applied.
 
@@ -142,7 +125,7 @@ def with_feedforward(control: System, gains: Array | None, coordinates: Coordina
     """
     if gains is None:
         return control
-    wanted = channels("reference", coordinates)
+    wanted = coordinates.motions("reference.")
     place = next((number for number, name in enumerate(control.input_names) if name.startswith("applied.")), len(control.inputs))
     return System(
         control.A,

@@ -25,18 +25,15 @@ class Family:
     """A kind of controller by its `name` in words: its `laws` with |C g| = 1 at a place, sampled every so many seconds (None: not).
 
     Of them tuning takes, loop by loop, the one with the lowest peak of S. `notched`: notches behind it are placed on modes that need them.
-    `others`: what to try where it does not reach what is wanted.
+    `others`: what to try where it does not reach what is wanted. `steps` are the ratios of bandwidths tried in turn, above 0.05 of the
+    first mode and below, where less depends on them.
     """
 
     name: str
     laws: Callable[[Place, float | None], Sequence[Law]]
     notched: bool = True
     others: str = "PID or LQG"
-
-    @property
-    def value(self) -> str:
-        """Its name in words."""
-        return self.name
+    steps: tuple[float, float] = (1.3, 2.0)
 
 
 def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:

@@ -10,7 +10,7 @@ import scipy
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
-from flexstage.control.controllers.decentralised import channels, with_feedforward
+from flexstage.control.controllers.decentralised import with_feedforward
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
@@ -268,8 +268,8 @@ def with_feedforward_states(control: System, given: LQG) -> System:
 
 def _ports(control: LQG) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
     coordinates = control.coordinates
-    applied = coordinates.commands("applied.")
-    return (*channels("error", coordinates), *channels("pose", coordinates), *applied), coordinates.commands("command.")
+    inputs = (*coordinates.motions("error."), *coordinates.motions("pose."), *coordinates.commands("applied."))
+    return inputs, coordinates.commands("command.")
 
 
 def _findings(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances) -> Iterator[Finding]:

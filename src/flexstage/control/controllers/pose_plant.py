@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexstage.control.controllers.decentralised import channels
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
 from flexstage.control.systems.system import System, select
 
@@ -22,7 +21,7 @@ def pose_plant(plant: Plant) -> System:
     whole = _driven(select(zero_order_hold(plant), plant.actuators, [f"gap.{name}" for name in plant.gauges]))
     pose = plant.coordinates.pose
     commands = plant.coordinates.commands("command.")
-    return replace(whole, C=pose @ whole.C, D=pose @ whole.D, inputs=commands, outputs=channels("pose", plant.coordinates))
+    return replace(whole, C=pose @ whole.C, D=pose @ whole.D, inputs=commands, outputs=plant.coordinates.motions("pose."))
 
 
 def _driven(system: System) -> System:

@@ -87,19 +87,14 @@ def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sens
 
 def _inputs(control: System, coordinates: Coordinates) -> tuple[Channel, ...]:
     """Those of the controller, with the reference before what was applied."""
-    wanted = tuple(Channel(f"reference.{name}", unit) for name, unit in zip(coordinates.names, coordinates.units, strict=True))
     rest = [each for each in control.inputs if not each.name.startswith("reference.")]
     before = [each for each in rest if not each.name.startswith("applied.")]
-    return (*before, *wanted, *rest[len(before) :])
+    return (*before, *coordinates.motions("reference."), *rest[len(before) :])
 
 
 def _shaped(filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates, step: float | None) -> System:
     """From `asked.<c>` to `shaped.<c>`."""
     back = np.linalg.pinv(sense)
-    entry, exit_ = (
-        tuple(Channel(f"{kind}.{name}", unit) for name, unit in zip(coordinates.names, coordinates.units, strict=True))
-        for kind in ("asked", "shaped")
-    )
     parts = [each.system(step) if each is not None else None for each in filters]
     size = sum(len(each.A) for each in parts if each is not None)
     A, B, C, D = np.zeros((size, size)), np.zeros((size, len(parts))), np.zeros((len(parts), size)), np.eye(len(parts))
@@ -109,4 +104,6 @@ def _shaped(filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Co
             own = slice(row, row + len(each.A))
             A[own, own], B[own, [loop]], C[loop, own], D[loop, loop] = each.A, each.B, each.C[0], each.D[0, 0]
             row = own.stop
-    return replace(System(A, B @ sense, back @ C, back @ D @ sense, entry, exit_), step=step)
+    return replace(
+        System(A, B @ sense, back @ C, back @ D @ sense, coordinates.motions("asked."), coordinates.motions("shaped.")), step=step
+    )

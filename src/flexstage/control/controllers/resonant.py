@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import Finding, require
 from flexstage.base.record import Heading
 from flexstage.base.units.quantity import RATE, TIME
 from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
@@ -71,19 +71,6 @@ def _sampling_findings(corner: float, step: float | None) -> list[Finding]:
     return [Finding("integral resonant control", what, f"Sample above {2.0 * corner:g} Hz")]
 
 
-def resonant_damping(frequency: float, feedthrough: float, static: float = 1.0) -> float:
-    """The damping ratio that integral resonant control gives at most to an undamped mode at `frequency`: (w_p/w_z - 1)/2.
-
-    w_z = w_p sqrt(1 - g/d) are the zeros of the plant with feed-through, g = `static` its static gain (Namavar, Fleming & Aphale 2014). It
-    does not depend on the frequency but by w_p/w_z. Raises `DesignError` for a feed-through d that is not above g.
-
-    >>> round(resonant_damping(110.9, feedthrough=2.0), 4)  # (sqrt(2) - 1)/2
-    0.2071
-    """
-    zeros = _zeros(frequency, feedthrough, static)
-    return 0.5 * (frequency / zeros - 1.0)
-
-
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
     """The gains that give an undamped mode at `frequency` [Hz] this `damping` ratio, the most for their feed-through.
 
@@ -100,10 +87,3 @@ def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking
     ratio = 1.0 + 2.0 * damping
     feedthrough = static * ratio**2 / (ratio**2 - 1.0)
     return IntegralResonant(2.0 * math.pi * frequency * math.sqrt(ratio) / feedthrough, feedthrough, tracking)
-
-
-def _zeros(frequency: float, feedthrough: float, static: float) -> float:
-    if feedthrough <= static:
-        what = f"a feed-through of {feedthrough:g} is not above the plant's static gain {static:g}"
-        raise refuse("integral resonant control", what, f"Give more than {static:g}: the positive feedback would run away")
-    return frequency * math.sqrt(1.0 - static / feedthrough)

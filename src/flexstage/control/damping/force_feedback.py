@@ -102,17 +102,6 @@ def most_damping(frequency: float, zero: float) -> float:
     return (frequency - zero) / (2.0 * zero)
 
 
-def best_gain(frequency: float, zero: float) -> float:
-    """The gain [1/s] of most damping, 2 pi w (w/z)^(1/2) of frequencies in Hz.
-
-    >>> roots = np.roots([1.0, best_gain(1.2, 1.0), (2.4 * np.pi) ** 2, best_gain(1.2, 1.0) * (2.0 * np.pi) ** 2])
-    >>> pair = roots[np.argmax(roots.imag)]
-    >>> round(float(-pair.real / abs(pair)), 9), round(most_damping(1.2, 1.0), 9)
-    (0.1, 0.1)
-    """
-    return 2.0 * np.pi * frequency * float(np.sqrt(frequency / zero))
-
-
 def damping_of_pair(law: ForceFeedback, frequency: float, zero: float) -> complex:
     """The pole [1/s] that an undamped mode comes to: the root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0 that goes on from j w as g grows.
 

@@ -52,6 +52,16 @@ class Coordinates:
         """Whether forces drive the stage."""
         return any(unit != "m" for unit in self.input_units)
 
+    def motions(self, prefix: str = "") -> tuple[Channel, ...]:
+        """Channels of the coordinates, named with a prefix.
+
+        >>> from flexstage.cases.parallelogram import parallelogram
+        >>> from flexstage.models.ideal import ideal
+        >>> coordinates(ideal(parallelogram())).motions("error.")
+        (Channel(name='error.x', unit='m'),)
+        """
+        return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.names, self.units, strict=True))
+
     def readings(self, prefix: str = "") -> tuple[Channel, ...]:
         """A channel a gauge, its name behind a prefix, in its unit."""
         units = self.gauge_units or ("m",) * len(self.gauges)

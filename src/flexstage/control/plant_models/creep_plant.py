@@ -10,7 +10,7 @@ from flexstage.base.finding import refuse
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.plant_models.electronics import ChargeDrive
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.system import System, connect, rename, select
+from flexstage.control.systems.system import System, connect, rename
 from flexstage.models.linear.model import Channel
 
 
@@ -39,11 +39,9 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
         systems.insert(1, _relieve(name, drive))
         links |= {f"own.{name}": {crept[name]: 1.0, name: -1.0}, crept[name]: {name: 1.0, f"left.{name}": 1.0}}
     states += [f"relief.{name}" for name in reversed(held)]
-    whole = connect(systems, links, _inputs(given, entering), given.system.output_names)
+    whole = connect(systems, links, given.system.inputs, given.system.output_names)
     note = f"{given.note}; creep by {creep.times.shape[1]} exponentials an actuator"
-    return replace(
-        given, system=select(whole, given.system.input_names, given.system.output_names), states=(*states, *given.states), note=note
-    )
+    return replace(given, system=whole, states=(*states, *given.states), note=note)
 
 
 def _relieve(name: str, drive: ChargeDrive) -> System:
@@ -51,7 +49,3 @@ def _relieve(name: str, drive: ChargeDrive) -> System:
     rate, left = 2.0 * np.pi * drive.corner, drive.residual_hysteresis
     one, entry, exit_ = np.eye(1), (Channel(f"own.{name}", "m"),), (Channel(f"left.{name}", "m"),)
     return System(-rate * one, one, (1.0 - left) * rate * one, left * one, entry, exit_)
-
-
-def _inputs(given: Plant, strokes: tuple[Channel, ...]) -> tuple[Channel, ...]:
-    return (*strokes, *(channel for channel in given.system.inputs if channel.name not in given.actuators))

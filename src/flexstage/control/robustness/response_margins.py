@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.controllers.decentralised import channels
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System
@@ -81,7 +80,7 @@ def _response(controller: System, loop: Coordinates, lines: Array, signs: dict[s
     found = np.zeros((len(lines), len(loop.actuators), len(loop.names)), dtype=complex)
     order = [controller.output_names.index(f"command.{name}") for name in loop.actuators]
     for kind, sign in signs.items():
-        for column, channel in enumerate(channels(kind, loop)):
+        for column, channel in enumerate(loop.motions(f"{kind}.")):
             if channel.name in controller.input_names:
                 found[:, :, column] += sign * whole[:, order, controller.input_names.index(channel.name)]
     return found

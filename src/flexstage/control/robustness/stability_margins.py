@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
-import scipy
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix, ratio_units
@@ -17,15 +16,14 @@ from flexstage.base.record import INNER, VIEW, Along, Heading, Layout, Mark
 from flexstage.base.units.quantity import ANGLE, FREQUENCY, SHORT_TIME
 from flexstage.control.robustness.disk import Edge, disk_margin
 from flexstage.control.robustness.stability import require_stable
-from flexstage.control.systems.closed import Loop, LoopBreak, loop, open_at
-from flexstage.control.systems.curves import Curves, curves, roots, sensitivity, sign_changes
+from flexstage.control.systems.closed import Loop, LoopBreak, open_at
+from flexstage.control.systems.curves import Curves, curves, roots, sensitivity
 from flexstage.control.systems.norm import Peak, peak
-from flexstage.control.systems.resolvent import Resolvent, resolvent
+from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System, select
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _AT_REST = 1e-8
-_FEW = 250
 _USUAL_DISK = 0.5
 
 
@@ -255,93 +253,3 @@ def crosstalk(closed: Loop, frequency: float = 0.0) -> Matrix:
     chosen = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in COMPONENTS])
     found = chosen.transfer(np.array([frequency]))[0]
     return Matrix(np.abs(found) if frequency else found.real, COMPONENTS, names, ratio_units(TWIST_UNITS, closed.plant.coordinates.units))
-
-
-def delay_margin(closed: Loop) -> Edge:
-    """How much later [s] all commands together may come: the delay that brings a pole of the closed loop to the edge.
-
-    The least tau at which e^{-j omega tau} times an eigenvalue of L is -1: exact for a continuous loop. With samples only whole ones are
-    such a factor, the rest goes into the hold, exactly: found from there by the growth of the loop itself, in steps of a tenth, or for
-    long delays by the secant rule on what is left of tau. Infinite: no eigenvalue of L reaches the unit circle. Raises `DesignError`
-    for an unstable loop.
-
-    >>> from flexstage.control.example import integral_loop
-    >>> found = integral_loop(gain=400.0)
-    >>> later = delay_margin(found).value
-    >>> closer = replace(found.plant, hardware=replace(found.plant.hardware, delay=found.plant.hardware.delay + later))
-    >>> abs(loop(closer, found.controller).system.growth) < 1e-6
-    True
-    """
-    require_stable(closed, "delay margin")
-    response = resolvent(open_at(closed, LoopBreak.POSE))
-    expected = Edge(*min(_unit_crossings(response, curves(closed, LoopBreak.POSE).frequencies), default=(np.inf, np.nan)))
-    step = closed.step
-    if step is None and np.max(np.abs(np.linalg.eigvals(response.system.D))) >= 1.0:
-        return Edge(0.0, np.inf)
-    if step is None or not np.isfinite(expected.value):
-        return expected
-    if len(closed.system.A) + expected.value / step * len(closed.plant.actuators) < _FEW:
-        return Edge(_scan_delay(closed, expected.value), expected.frequency)
-
-    def excess(later: float) -> float:
-        moved = resolvent(open_at(_delay_loop(closed, later % step), LoopBreak.POSE))
-        return _missing_delay(moved, expected.frequency, later - later % step)
-
-    return Edge(_secant_root(excess, expected.value), expected.frequency)
-
-
-def _delay_loop(closed: Loop, delay: float) -> Loop:
-    hardware = replace(closed.plant.hardware, delay=closed.plant.hardware.delay + delay)
-    return loop(replace(closed.plant, hardware=hardware), closed.controller)
-
-
-def _scan_delay(closed: Loop, expected: float) -> float:
-    """The first delay at which the loop begins to grow, from none up."""
-    for number in range(1, 31):
-        outside = 0.1 * number * expected
-        if _delay_loop(closed, outside).system.growth >= 0.0:
-            found: Any = scipy.optimize.brentq(
-                lambda delay: _delay_loop(closed, delay).system.growth, outside - 0.1 * expected, outside, xtol=1e-13 * expected
-            )
-            return float(found)
-    return np.inf
-
-
-def _missing_delay(response: Resolvent, near: float, wanted: float) -> float:
-    """What a delay lacks of the nearest one that brings an eigenvalue near a frequency to -1; they recur with every turn."""
-    widths = np.geomspace(1e-6, 0.5, 20)
-    points = np.unique(np.concatenate([near * (1.0 - widths), [near], near * (1.0 + widths)]))
-    end = np.inf if response.system.step is None else 0.5 / response.system.step
-    turned = [(delay - wanted, frequency) for delay, frequency in _unit_crossings(response, points[points < end])]
-    return min((lack - round(lack * frequency) / frequency for lack, frequency in turned), key=abs)
-
-
-def _secant_root(of: Callable[[float], float], start: float) -> float:
-    """Zero of a function that falls nearly by 1 per 1, by the secant rule."""
-    last, at_last = start, of(start)
-    here = start + at_last
-    for _ in range(20):
-        at_here = of(here)
-        if abs(at_here) <= 1e-14 * start or at_here == at_last:
-            break
-        last, here, at_last = here, here - at_here * (here - last) / (at_here - at_last), at_here
-    return here
-
-
-def _unit_crossings(response: Resolvent, frequencies: Array) -> list[tuple[float, float]]:
-    """Delay and frequency wherever an eigenvalue of L has the size 1. In order of size, eigenvalues are continuous in frequency."""
-    edges: list[tuple[float, float]] = []
-    sizes = np.abs(_eigenloci(response.at(frequencies))) - 1.0
-    for number in range(sizes.shape[1]):
-        places = sign_changes(sizes[:, number])
-        ends, values = (frequencies[places], frequencies[places + 1]), (sizes[places, number], sizes[places + 1, number])
-        at = roots(lambda points, number=number: np.abs(_eigenloci(response.at(points))[:, number]) - 1.0, ends, values)
-        turns = (np.angle(_eigenloci(response.at(at))[:, number]) + np.pi) % (2.0 * np.pi)
-        edges += zip((turns / (2.0 * np.pi * at)).tolist(), at.tolist(), strict=True)
-    return edges
-
-
-def _eigenloci(loops: Array) -> Array:
-    """Eigenvalues (f, n) of L, the largest first."""
-    values = np.linalg.eigvals(loops)
-    return np.take_along_axis(values, np.argsort(-np.abs(values), axis=1), axis=1)

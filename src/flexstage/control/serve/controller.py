@@ -13,9 +13,10 @@ from flexstage.control.serve.errors import Code, CommandError
 from flexstage.control.serve.recorder import POSITION, TABLES, VOLTAGE, Recorder
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.running import RunningLoop
+from flexstage.control.study.disturbed import rest_time
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.retained import control_and_modes
-from flexstage.control.study.runs import command_ends, driven_machine, rest_time
+from flexstage.control.study.runs import command_ends, driven_machine
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import stacks_of
 from flexstage.control.study.study import pose_gains

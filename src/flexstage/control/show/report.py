@@ -7,7 +7,7 @@ from dataclasses import replace
 from flexstage.base.arguments import check_arguments
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
-from flexstage.control.show.figures.front import FrontLine, front_figure
+from flexstage.control.show.figures.front import front_figure
 from flexstage.control.show.playing import response_motions
 from flexstage.control.show.sections import error_section, frequency_section, headline, loop_section, measured_section, time_section
 from flexstage.control.show.tables import comparison_tables, kind_name
@@ -55,16 +55,18 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", __version__))
     data = stage_data(mechanism)
     best = ", ".join(f"{aim} by {kind_name(name)}" for aim, name in found.wins.items())
-    lines = [
-        FrontLine(kind_name(name), name in found.front, one.rejection, one.noise, one.settling, one.delay_margin)
-        for name, each in found.controllers.items()
-        if (one := each.detuned) is not None and len(one.gains)
-    ]
+    detuned = {kind_name(name): each.detuned for name, each in found.controllers.items()}
+    lines = {name: each for name, each in detuned.items() if each is not None and len(each.gains)}
     caption = (
         "Dots: as tuned; lines: the same controllers with their output turned down to a tenth at most. The worst of all motions, in the "
         "linear loop; of noise the geometric mean, rotations times the stage's length. Full dots: no other is better at once in all four."
     )
-    drawn = Picture(to_svg(front_figure(lines), "front", "What controllers trade: rejection, noise, settling, delay margin"), caption)
+    drawn = Picture(
+        to_svg(
+            front_figure(lines, [*map(kind_name, found.front)]), "front", "What controllers trade: rejection, noise, settling, delay margin"
+        ),
+        caption,
+    )
     compared, by_coordinate = comparison_tables(found)
     sections = (
         stage_section(scene(mechanism), motion=first_motion(data)),

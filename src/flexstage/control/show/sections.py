@@ -9,22 +9,21 @@ import numpy as np
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
 from flexstage.control.show.figures.diagram import Block as Box
 from flexstage.control.show.figures.diagram import Diagram, loop_diagram
-from flexstage.control.show.figures.frequency import Curves, Measured, measured_figure, open_loop_figure, pole_figure, sensitivity_figure
-from flexstage.control.show.figures.hysteresis import HysteresisLoop, hysteresis_figure
-from flexstage.control.show.figures.noise import Densities, Shares, noise_share_figure, noise_spectrum_figure
+from flexstage.control.show.figures.frequency import measured_figure, open_loop_figure, pole_figure, sensitivity_figure
+from flexstage.control.show.figures.hysteresis import hysteresis_figure
+from flexstage.control.show.figures.noise import noise_share_figure, noise_spectrum_figure
 from flexstage.control.show.figures.time import error_figure, lesson_figure, path_figure, step_figure
 from flexstage.control.show.tables import count_modes, error_tables, loop_tables, margin_tables, measured_tables, time_tables
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import Run
-from flexstage.control.study.stacks import Sweep
 from flexstage.control.study.study import LoopStudy
+from flexstage.control.tuning.objective import SENSITIVITY
 from flexstage.show.display import format_value, number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Prose, Section, fold, section
 from flexstage.show.table import matrix_table
 
-_GOAL = 2.0
 _NOISELESS = 1e-16
 
 
@@ -146,13 +145,12 @@ def frequency_section(found: LoopStudy) -> Section | None:
     if found.curves is None:
         return None
     seen, plant = found.curves, found.plant
-    own = np.diagonal(seen.sensitivity, axis1=1, axis2=2)
     modes = plant.frequencies[: 2 * len(plant.coordinates.names)]
     spots = tuple(margin_spots(found))
-    opened = open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes, spots=spots)
+    opened = open_loop_figure(seen, modes, spots)
     loops = to_svg(opened, "open-loops", "Open loops over frequency")
-    peak = found.controller.tuning.spec.sensitivity if found.controller.tuning is not None else _GOAL
-    pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), peak)
+    peak = found.controller.tuning.spec.sensitivity if found.controller.tuning is not None else SENSITIVITY
+    pair = sensitivity_figure(seen, peak)
     sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
     caption = (
@@ -182,9 +180,7 @@ def measured_section(found: LoopStudy) -> Section | None:
     if found.measured is None:
         return None
     seen = found.measured.sensitivities
-    drawn = measured_figure(
-        Measured(seen.frequencies, found.plant.coordinates.names, seen.measured, seen.low, seen.high, seen.fitted, seen.predicted)
-    )
+    drawn = measured_figure(seen, found.plant.coordinates.names)
     picture = to_svg(drawn, "measured-loops", "Sensitivities on the measured responses")
     sure = "shaded: 95 % of every line" if seen.low is not None else "the test does not say how sure its responses are"
     caption = f"What every loop leaves of a disturbance along its axis, hold and delay included; {sure}."
@@ -239,12 +235,12 @@ def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
 def error_section(found: LoopStudy) -> Section | None:
     """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
     blocks: list[Block | None] = [*error_tables(found), *_noise_pictures(found)]
-    if found.hysteresis is not None:
-        drawn = to_svg(
-            hysteresis_figure(_worst_loops(found.hysteresis)), "hysteresis", "Hysteresis of a stack with and without its inverse"
-        )
-        name = found.hysteresis.actuators[_worst_stack(found.hysteresis)]
-        blocks.append(Picture(drawn, f"Isolated stack of {name}, driven to and fro in open loop."))
+    if (swept := found.hysteresis) is not None:
+        worst = int(np.argmax(swept.rms_error))
+        reached = {"without inverse": swept.bare[:, worst], "with inverse": swept.inverse[:, worst]}
+        figure = hysteresis_figure(swept.wanted[:, worst], reached)
+        drawn = to_svg(figure, "hysteresis", "Hysteresis of a stack with and without its inverse")
+        blocks.append(Picture(drawn, f"Isolated stack of {swept.actuators[worst]}, driven to and fro in open loop."))
     return section("Errors and noise", blocks)
 
 
@@ -252,28 +248,7 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
     budget = found.noise
     if not np.any(budget.rms > _NOISELESS):
         return
-    shares = noise_shares(found)
-    drawn = to_svg(noise_share_figure(shares), "noise-shares", "Shares of the noise by source")
+    drawn = to_svg(noise_share_figure(budget), "noise-shares", "Shares of the noise by source")
     yield Picture(drawn, "Whose the noise is: shares of the mean square of each motion at rest, and its rms.")
-    densities = Densities(shares.coordinates, shares.units, budget.frequencies, np.sum(budget.density, axis=2))
-    drawn = to_svg(noise_spectrum_figure(densities), "noise-spectrum", "Noise over frequency")
+    drawn = to_svg(noise_spectrum_figure(budget), "noise-spectrum", "Noise over frequency")
     yield Picture(drawn, "Where it lies: amplitude densities of the true motion, and its rms summed up from the lowest frequency.")
-
-
-def noise_shares(found: LoopStudy) -> Shares:
-    """Mean squares of the motions at rest by kind of source."""
-    budget = found.noise
-    names = tuple(channel.name.removeprefix("relative.") for channel in budget.outputs)
-    kinds = tuple(kind.value for kind in budget.kinds)
-    return Shares(names, tuple(each.unit for each in budget.outputs), kinds, np.asarray(budget.by_kind.values))
-
-
-def _worst_stack(sweep: Sweep) -> int:
-    return int(np.argmax(sweep.rms_error))
-
-
-def _worst_loops(sweep: Sweep) -> list[HysteresisLoop]:
-    """The stack that is furthest off."""
-    index = _worst_stack(sweep)
-    pairs = (("without inverse", sweep.bare), ("with inverse", sweep.inverse))
-    return [HysteresisLoop(name, sweep.wanted[:, index], came[:, index]) for name, came in pairs]

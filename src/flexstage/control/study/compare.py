@@ -25,9 +25,10 @@ from flexstage.control.study.choices import SEARCHED, ControllerKind, OfferedKin
 from flexstage.control.study.setup import ControllerSetup, DampingSetup, LoopSetup, StepMotion
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.judge import closed_growth
-from flexstage.control.tuning.outcome import Bench, bench, outcome
+from flexstage.control.tuning.laws import PI_FAMILY
+from flexstage.control.tuning.outcome import outcome
 from flexstage.control.tuning.search import field
-from flexstage.control.tuning.search_spec import SearchSpec
+from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.view import view
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.assembly.expand import expand
@@ -278,13 +279,13 @@ def _detuned(study: LoopStudy, settling: float) -> DetunedController:
     """The same controller with less gain; of all its gain the `settling` [s] is known, however long it takes."""
     loops = platform_loops(study.plant.coordinates)
     seen = view(study.plant, loops, 0.0)
-    tried = bench(seen, field(seen, SearchSpec(spread=0.0), study.settled.floor))
+    within = field(seen, TuningSpec(PI_FAMILY, spread=0.0, floor=study.settled.floor))
     control = study.controller.system
     quieter = ((gain, replace(control, C=gain * control.C, D=gain * control.D)) for gain in _TURNED)
     stable = [gain for gain, system in quieter if closed_growth(seen.systems[0], system) < 0.0]
-    found = [outcome(tried, control, gain) for gain in stable]
+    found = [outcome(within, control, gain) for gain in stable]
     noises, settled = (np.array(each) for each in ([one.noise for one in found], [np.max(one.settling) for one in found]))
-    settled = np.where(settled < _SEEN * _step_length(tried), settled, np.nan)
+    settled = np.where(settled < _SEEN * (len(within.lines) - 1) / float(within.lines[-1]), settled, np.nan)
     settled = np.where(np.isnan(settled) & (np.array(stable) == 1.0), settling, settled)
     return DetunedController(
         gains=np.array(stable),
@@ -293,12 +294,6 @@ def _detuned(study: LoopStudy, settling: float) -> DetunedController:
         settling=settled,
         delay_margin=np.array([np.min(each.delay_margin) for each in found]),
     )
-
-
-def _step_length(tried: Bench) -> float:
-    """How long the steps last [s] that outcomes tell of."""
-    lines = tried.field.lines
-    return (len(lines) - 1) / float(lines[-1])
 
 
 def _gauge_share(noise: NoiseBudget) -> float | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -14,8 +13,7 @@ from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY
-from flexstage.control.controllers.decentralised import Decentralised, channels
-from flexstage.control.controllers.family import Family
+from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
@@ -24,29 +22,20 @@ from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
-from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching, OfferedKind
+from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
 from flexstage.control.study.resolve import ResolvedSetup
-from flexstage.control.study.setup import GAINS, ControllerSetup, GoalSetup, LoopNumbers, NotchSetup, PrefilterSetup
+from flexstage.control.study.setup import GAINS, ControllerSetup, LoopNumbers, NotchSetup, PrefilterSetup
 from flexstage.control.systems.system import System, static
-from flexstage.control.tuning.attempt import Task
-from flexstage.control.tuning.find import Asked, find
-from flexstage.control.tuning.search_spec import SearchSpec
-from flexstage.control.tuning.spec import Kind, Tuning, TuningSpec
+from flexstage.control.tuning.find import find
+from flexstage.control.tuning.laws import FAMILIES
+from flexstage.control.tuning.objective import SENSITIVITY
+from flexstage.control.tuning.spec import Tuning, TuningSpec
 from flexstage.control.tuning.tune import tune
 
-_KINDS: Mapping[ControllerKind, Kind] = MappingProxyType(
-    {
-        ControllerKind.PI: Kind.PI,
-        ControllerKind.PID: Kind.PID,
-        ControllerKind.RESONANT: Kind.RESONANT,
-        ControllerKind.LQG: Kind.LQG,
-    }
-)
 _EXPECTED = 1e-9
 """Density [m/Hz^0.5] that an observer takes strokes to be disturbed by where no amplifier's noise is stated."""
 _QUIETEST = 1e-13
 """Least density [m/Hz^0.5] that it takes gauges to have: it would trust one without noise beyond all measure."""
-_SENSITIVITY = 2.0
 _FILTER = 1e3
 
 
@@ -127,49 +116,26 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     if asked.stated:
         made_of = _of_numbers(given, loops, forward)
         return Control(made_of.system(given.step), made_of, None, gains)
-    if asked.goal is not None:
-        noises = _expected_noise(given) if asked.law is ControllerKind.LQG else None
-        kind = _KINDS[ControllerKind(asked.law.value)]
-        sought = find(given.plant, loops, Asked(kind, _search_spec(asked, asked.goal), given.floor, forward, noises))
-        return Control(sought.controller.system(given.step), sought.controller, sought, gains)
-    task = Task(
-        kind=_tuned(asked.law),
-        spec=TuningSpec(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
+    goal = {} if asked.goal is None else vars(asked.goal)
+    spec = TuningSpec(
+        family=FAMILIES.get(asked.law.value) or CONTROLLERS.all[asked.law.value],
+        bandwidth=asked.bandwidth,
+        sensitivity=asked.sensitivity or SENSITIVITY,
         notches=tuple(_notch(each, given) for each in asked.notches),
         automatic=asked.notching is Notching.AUTOMATIC,
         expected=_expected_noise(given) if asked.law is ControllerKind.LQG else None,
+        floor=given.floor,
         feedforward=forward,
+        **goal,
     )
-    found = tune(given.plant, loops, task)
+    found = (find if goal else tune)(given.plant, loops, spec)
     return Control(found.controller.system(given.step), found.controller, found, gains)
-
-
-def _tuned(law: ControllerKind | OfferedKind) -> Kind | Family:
-    """What tuning calls a kind; a family that another package offers."""
-    family = None if isinstance(law, ControllerKind) else CONTROLLERS.get(law.value)
-    if isinstance(law, ControllerKind) or family is None:
-        return _KINDS[ControllerKind(law.value)]
-    return family
-
-
-def _search_spec(asked: ControllerSetup, goal: GoalSetup) -> SearchSpec:
-    return SearchSpec(
-        objective=goal.objective,
-        sensitivity=asked.sensitivity or _SENSITIVITY,
-        spread=goal.spread,
-        gain=goal.gain,
-        delay_margin=goal.delay_margin or 0.0,
-        overshoot=goal.overshoot,
-        rejection=goal.rejection,
-        settling=goal.settling,
-        prefilter=goal.prefilter,
-    )
 
 
 def _open_loop(given: ResolvedSetup, gains: Array) -> System:
     """Strokes for the reference, whatever the gauges say."""
     loop = given.plant.coordinates
-    return static(gains, channels("reference", loop), loop.commands("command."), given.step)
+    return static(gains, loop.motions("reference."), loop.commands("command."), given.step)
 
 
 def _loops(given: ResolvedSetup, gains: Array) -> Loops:

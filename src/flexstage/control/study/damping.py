@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -29,17 +29,8 @@ _CORNER = 0.1
 _WHOLE = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Damped:
-    """The plant with the modes retained and the whole one, with the inner loops closed, and what these do."""
-
-    plant: Plant
-    whole: Plant
-    found: ActiveDamping
-
-
-def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> Damped:
-    """Close the inner loops of a set-up around both plants, which have the links' forces.
+def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> tuple[Plant, Plant, ActiveDamping]:
+    """Close the inner loops of a set-up around both plants, which have the links' forces; return both with their description.
 
     Raises `DesignError` where they are unstable, with all modes or with those retained, and for a rate that is no multiple of the loop's.
     """
@@ -58,7 +49,7 @@ def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], 
         what = f"with a gain of {law.gain:.4g} 1/s the inner loops are unstable: they grow by {growth:.3g} 1/s"
         raise refuse("damping", what, "Ask for less damping; faster amplifiers, a higher lag and a shorter delay let it be more")
     found = replace(describe_damping(plant, closed, law, felt, pairs), rate=asked.rate)
-    return Damped(with_damped_modes(closed, found), both, found)
+    return with_damped_modes(closed, found), both, found
 
 
 def _delay(asked: DampingSetup) -> float:

@@ -114,16 +114,16 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
     require(_force_findings(kinematics, setup))
     setup = _settle(setup, forced=bool(kinematics.thrusts))
-    held = _charges(mechanism, model, setup)
-    moving = model if held is None else held.model
+    charged, drives = _charges(mechanism, model, setup)
+    moving = at_constant_charge(model, charged, drives) if drives else model
     highest = highest_platform_mode(mechanism, moving, len(kinematics.coordinates))
     rate = setup.rate if setup.rate is not None else default_rate(highest)
     delay = setup.delay if setup.delay is not None else 1.0 / rate
     require([*_rate_findings(rate, highest), *_delay_findings(delay * rate)])
     given = _hardware(mechanism, setup, rate, delay)
     sensed = () if setup.damping is None else legs(mechanism, moving, setup.damping.gauges)
-    links = tuple(dict.fromkeys((*(each.sensed for each in sensed), *(each.link for each in (() if held is None else held.legs)))))
-    stage = StagePlant(plant(moving, kinematics, given, modes=len(moving.stiffness_matrix), links=links), model, moving, held, sensed)
+    links = tuple(dict.fromkeys((*(each.sensed for each in sensed), *(each.link for each in charged))))
+    stage = StagePlant(plant(moving, kinematics, given, modes=len(moving.stiffness_matrix), links=links), moving, charged, drives, sensed)
     if setup.modes is None:
         slow = stage.plant.frequencies < 0.5 * rate
         found = reduce_modes(stage.plant, slow & (resonances(stage.plant) >= _RESONANCE))
@@ -162,52 +162,38 @@ def retain_modes(given: ResolvedSetup, wanted: Array) -> ResolvedSetup:
 
 def _with_inner_loops(given: ResolvedSetup, found: Plant, stage: StagePlant) -> ResolvedSetup:
     """The set-up with this plant of the stage, behind amplifiers of charge and force feedback where it has them."""
-    setup, held, whole = given.setup, stage.held, stage.plant
-    charge = None if held is None else describe_charge(found, stage.model, stage.moving, held.drives)
-    if held is not None:
+    whole, charge, damping = stage.plant, None, None
+    if stage.drives:
+        charge = describe_charge(found, given.model, stage.moving, stage.drives)
         kept = tuple(each.sensed for each in stage.sensed)
-        found, whole = (leak_charge(each, held.legs, held.drives, kept) for each in (found, whole))
-    damped = None if setup.damping is None else damp(found, whole, stage.moving, stage.sensed, setup.damping)
-    return replace(
-        given,
-        plant=found if damped is None else damped.plant,
-        whole=whole if damped is None else damped.whole,
-        damping=None if damped is None else damped.found,
-        charge=charge,
-    )
+        found, whole = (leak_charge(each, stage.charged, stage.drives, kept) for each in (found, whole))
+    if given.setup.damping is not None:
+        found, whole, damping = damp(found, whole, stage.moving, stage.sensed, given.setup.damping)
+    return replace(given, plant=found, whole=whole, damping=damping, charge=charge)
 
 
 @dataclass(frozen=True, eq=False)
 class StagePlant:
-    """The stage with all modes of its model, before inner loops are closed: what plants with some of them are made from.
+    """The stage with all modes of its model, before inner loops are closed: plants with some of the modes are made from it.
 
-    `moving` is the `model` at constant charge where amplifiers hold it (`held`); `sensed` are the legs with force feedback.
+    `moving` is the model at constant charge where amplifiers hold it, in the legs `charged` with their `drives`; `sensed` are the legs
+    with force feedback.
     """
 
     plant: Plant
-    model: LinearModel
     moving: LinearModel
-    held: _Charges | None
+    charged: tuple[Leg, ...]
+    drives: Mapping[str, ChargeDrive]
     sensed: tuple[Leg, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class _Charges:
-    """The legs that are held at their charge, their drives, and the model as stiff as they then are."""
-
-    legs: tuple[Leg, ...]
-    drives: Mapping[str, ChargeDrive]
-    model: LinearModel
-
-
-def _charges(mechanism: Mechanism, model: LinearModel, setup: LoopSetup) -> _Charges | None:
-    """What amplifiers of charge hold; `None` where there are none."""
+def _charges(mechanism: Mechanism, model: LinearModel, setup: LoopSetup) -> tuple[tuple[Leg, ...], Mapping[str, ChargeDrive]]:
+    """The legs that amplifiers hold at their charge, and their drives; empty where there are none."""
     if setup.amplifier.settings.charge is None:
-        return None
+        return (), {}
     powers = sampling_chain(mechanism, amplifiers=setup.amplifier.settings).amplifiers
     drives = Table({name: each.charge for name, each in powers.items() if each.charge is not None})
-    held = tuple(each for each in legs(mechanism, model, asked="amplifier") if each.actuator in drives)
-    return _Charges(held, drives, at_constant_charge(model, held, drives))
+    return tuple(each for each in legs(mechanism, model, asked="amplifier") if each.actuator in drives), drives
 
 
 def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
@@ -267,9 +253,17 @@ def default_rate(highest: float) -> float:
     >>> default_rate(173.0), default_rate(2853.9)
     (10000.0, 50000.0)
     """
-    wanted = max(_USUAL, _OVER_HIGHEST * highest)
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * (1.0 - 1e-9)))
+    return round_up(max(_USUAL, _OVER_HIGHEST * highest))
+
+
+def round_up(value: float) -> float:
+    """The next of 1, 2 or 5 times a power of ten.
+
+    >>> round_up(0.03)
+    0.05
+    """
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= value * (1.0 - 1e-9)))
 
 
 def _rate_findings(rate: float, highest: float) -> Iterator[Finding]:

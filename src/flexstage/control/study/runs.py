@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -22,23 +22,19 @@ from flexstage.control.learning.repeat import Repeated
 from flexstage.control.plant_models.creep_plant import add_creep
 from flexstage.control.plant_models.plants import ADDED
 from flexstage.control.simulation.machine import Machine, machine
-from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, other_motions, step_figures, tracking
 from flexstage.control.simulation.run import simulate
-from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
 from flexstage.control.study.course import Course, course_findings, course_warnings, courses, sampled_course
-from flexstage.control.study.follow import Runner, follow
+from flexstage.control.study.disturbed import DisturbedLoop, rest_time
+from flexstage.control.study.follow import follow
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.stacks import Stacks
 from flexstage.control.systems.closed import Loop
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.parts.actuator import ThrustActuator
 
-_TIME_CONSTANTS = 8.0
-_SHORTEST, _LONGEST = 0.02, 2.0
-_RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 _BAND = 0.02
 _STILL, _FEWEST, _MOST = 5.0, 5_000, 50_000
 _REPEATED = 6
@@ -229,17 +225,17 @@ def runs(
         for finding in course_findings(course, poses, times, gains, limits)
     )
     computed = driven_machine(given, control, stacks)
-    slew = computed.amplifiers.slew
-    found = []
+    slew, noisy, found = computed.amplifiers.slew, DisturbedLoop(given, computed, rest), []
     for course, (times, poses) in zip(asked, sampled, strict=True):
         warnings = tuple(course_warnings(course, poses, times, gains, slew, units=units))
-        if (known := given.setup.follow) is None:
-            found.append(_run(given, course, computed, warnings, poses=poses, rest=rest))
+        taught = {}
+        if given.setup.follow is not None:
+            simulated, taught = follow(given.setup.follow, closed, control.system, poses, course, noisy=noisy)
         else:
-            runner = Runner(_in_noise(given, computed, rest), _running(given, computed, rest))
-            learnt = follow(known, closed, control.system, poses, course, rest=rest, runner=runner)
-            run = _run_of(course, learnt.simulated, computed, warnings)
-            found.append(replace(run, learned=learnt.learned, repeated=learnt.repeated, commanded=learnt.commanded))
+            simulated = simulate(computed, poses) if course.is_step else noisy.simulate(poses)
+        figures = step_figures(simulated, _BAND) if course.is_step else None
+        warnings += tuple(_range_warnings(course, simulated, computed))
+        found.append(Run(course, simulated, figures, tracking(simulated), warnings, **taught))
     return tuple(_with_legs(_with_heat(given, run), computed) for run in found)
 
 
@@ -314,7 +310,8 @@ def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simul
         return None
     rest = rest_time(closed)
     count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST))
-    return _simulate_noise(given, driven_machine(given, control), np.zeros((count, len(given.plant.coordinates.names))), rest)
+    poses = np.zeros((count, len(given.plant.coordinates.names)))
+    return DisturbedLoop(given, driven_machine(given, control), rest).simulate(poses)
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,11 +336,11 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
     rest = rest_time(closed)
     count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST)) // 3
     computed, to_pose = driven_machine(given, control), given.plant.coordinates.pose
-    squares: list[Array] = []
-    for seed in range(given.setup.seed, given.setup.seed + _REPEATED):
-        within = np.random.default_rng([seed, _REPEATED]).uniform(-0.5, 0.5, to_pose.shape[1]) * computed.resolution
+    squares, noisy = list[Array](), DisturbedLoop(given, computed, rest)
+    for number in range(_REPEATED):
+        within = np.random.default_rng([given.setup.seed + number, _REPEATED]).uniform(-0.5, 0.5, to_pose.shape[1]) * computed.resolution
         held = to_pose @ within
-        found = _simulate_noise(replace(given, setup=replace(given.setup, seed=seed)), computed, np.tile(held, (count, 1)), rest, held)
+        found = noisy.simulate(np.tile(held, (count, 1)), number, held)
         squares.append(np.mean(found.true_error**2, axis=0))
     mean = np.mean(squares, axis=0)
     reach = scipy.special.stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
@@ -354,86 +351,6 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
 def _simulated_time(course: Course, rest: float) -> float:
     """A course, and a rest: of a step to see it settle, of a trajectory a fifth at most."""
     return course.duration + (rest if course.is_step else min(rest, 0.2 * course.duration))
-
-
-def rest_time(closed: Loop, *, ringing: bool = False) -> float:
-    """How long [s] the loop is given to settle: eight times the time constant of its slowest pole, at most 2 s.
-
-    Poles that ring count only where they are set `ringing`, by commands that pass the controller by; charge that leaks away is not awaited.
-
-    >>> from flexstage.control.example import integral_loop
-    >>> rest_time(integral_loop(gain=300.0))
-    0.05
-    """
-    poles = closed.system.poles
-    rates = np.log(poles[np.abs(poles) > _GONE].astype(complex)) * closed.plant.hardware.rate
-    leaks = [_LEAKED * 2.0 * np.pi * each.charge.corner for each in closed.plant.hardware.amplifiers.values() if each.charge is not None]
-    rates = rates[-rates.real > max(leaks, default=-np.inf)]
-    calm = -rates.real[-rates.real > _RINGING * np.abs(rates)]
-    slowest = float(np.min(calm)) if len(calm) and not ringing else float(np.min(-rates.real)) if leaks else -closed.system.growth
-    wanted = float(np.clip(_TIME_CONSTANTS / slowest, _SHORTEST, _LONGEST))
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * (1.0 - 1e-9)))
-
-
-def _simulate_noise(given: ResolvedSetup, computed: Machine, poses: Array, rest: float, held: Array | float = 0.0) -> Simulated:
-    """A simulation in noise, begun early enough that the loop has got used to it, and to the pose it is `held` at before.
-
-    The floor begins to shake gently, not at once.
-    """
-    lead, series = _noise(given, len(poses), rest)
-    if not series and not np.any(held):
-        return simulate(computed, poses)
-    before = np.zeros((lead, poses.shape[1])) + held
-    return _after(simulate(computed, np.concatenate([before, poses]), series), lead)
-
-
-def _noise(given: ResolvedSetup, count: int, rest: float) -> tuple[int, Mapping[str, Array]]:
-    """How many samples before some others the loop gets used to its noise in, and the noise of all of them."""
-    lead = int(rest / given.step)
-    noise = noise_series(given.plant, given.floor, lead + count, given.setup.seed)
-    share = np.clip(np.arange(lead + count) / max(lead, 1), 0.0, 1.0)
-    gentle = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-    return lead, {name: values * gentle if name.startswith("ground.") else values for name, values in noise.items()}
-
-
-def _after(found: Simulated, lead: int) -> Simulated:
-    """A simulation from a sample on, its clock begun anew; shares of limits are those of the whole."""
-    names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
-    kept = {name: getattr(found, name)[lead:] for name in names}
-    return replace(found, **(kept | {"times": found.times[lead:] - found.times[lead]}))
-
-
-def _run(given: ResolvedSetup, course: Course, computed: Machine, warnings: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
-    found = simulate(computed, poses) if course.is_step else _simulate_noise(given, computed, poses, rest)
-    return _run_of(course, found, computed, warnings)
-
-
-def _in_noise(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[[Array, int], Simulated]:
-    """Simulations of what is commanded, in each pass with numbers of its own."""
-
-    def run(commanded: Array, number: int) -> Simulated:
-        seed = given.setup.seed + number
-        return _simulate_noise(replace(given, setup=replace(given.setup, seed=seed)), computed, commanded, rest)
-
-    return run
-
-
-def _running(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[[int], Callable[[Array], Array]]:
-    """Loops that run on, in the noise of pass 0, from when they have got used to it."""
-
-    def begin(count: int) -> Callable[[Array], Array]:
-        lead, series = _noise(given, count, rest)
-        running, held = RunningLoop(computed, series), np.ones(len(computed.names), dtype=bool)
-        running.advance(np.zeros((lead, len(computed.names))), held)
-        return lambda commanded: running.advance(commanded, held).pose
-
-    return begin
-
-
-def _run_of(course: Course, found: Simulated, computed: Machine, warnings: tuple[Finding, ...]) -> Run:
-    figures = step_figures(found, _BAND) if course.is_step else None
-    return Run(course, found, figures, tracking(found), (*warnings, *_range_warnings(course, found, computed)))
 
 
 def _range_warnings(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:

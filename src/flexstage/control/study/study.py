@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, TypeVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -44,7 +44,6 @@ from flexstage.control.systems.curves import Curves, curves
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
 
-_Found = TypeVar("_Found")
 _LOWEST = 0.1
 _ENOUGH = 0.98
 """Of the damping asked for."""
@@ -172,11 +171,12 @@ def loop_study(
     >>> found.stability.stable, found.runs[0].course.name
     (True, 'x')
     """
-    said = _Steps(tell)
-    given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup(), there, solid))
+    said = tell or (lambda _, __: None)
+    said("reading the stage", 0.0)
+    given = resolve(mechanism, setup or LoopSetup(), there, solid)
     given = given if test is None else on_test(given, test.found)
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
-    given, control, retained = control_and_modes(given, pose_gains(given, lost), lambda text: said.of(0.05, text, lambda: None))
+    given, control, retained = control_and_modes(given, pose_gains(given, lost), lambda text: said(text, 0.05))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
@@ -184,12 +184,16 @@ def loop_study(
     carried = rest.load_strokes if rest is not None and Compensation.LOAD in given.setup.compensate else None
     stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
     is_closed = setup is None or setup.controller.law is not ControllerKind.NONE
-    tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
+    said("simulating", 0.6)
+    tested = runs(given, control, closed, stacks, carried)
     measured = None if test is None or not is_closed else measured_margins(closed, test, given.predicted or given.plant)
     require(() if test is None or measured is None else coherence_findings(test, measured))
-    noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative_motions(given)))
+    said("noise", 0.8)
+    motions = tuple(f"relative.{name}" for name in given.plant.coordinates.names)
+    noise = noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), motions)
     still = simulate_rest(given, control, closed)
     resting = rest_rms(given, control, closed) if noise.slowly_rounding else None
+    said("margins", 0.9)
     seen = curves(closed, LoopBreak.POSE) if is_closed else None
     return LoopStudy(
         settled=given,
@@ -198,7 +202,7 @@ def loop_study(
         closed=closed,
         stability=found,
         growth_all_modes=growth,
-        margins=said.of(0.8, "margins", lambda: margins(closed, LoopBreak.POSE, seen)) if is_closed else None,
+        margins=margins(closed, LoopBreak.POSE, seen) if is_closed else None,
         peaks=peaks(closed, LoopBreak.POSE) if is_closed else None,
         bandwidths=bandwidths(closed, seen) if is_closed else None,
         curves=seen,
@@ -227,24 +231,6 @@ def _reasons(*, is_closed: bool, forced: bool, tested: bool) -> dict[str, str]:
     open_loop = {} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves", "measured"), _NO_LOOP)
     open_loop |= {} if tested else {"measured": _NO_TEST}
     return open_loop | ({"static_errors": _NO_STROKES} if forced else {})
-
-
-def _relative_motions(given: ResolvedSetup) -> tuple[str, ...]:
-    """Outputs: the platform against the ground, by coordinate."""
-    return tuple(f"relative.{name}" for name in given.plant.coordinates.names)
-
-
-class _Steps:
-    """Tells how far a study is."""
-
-    def __init__(self, tell: Told | None) -> None:
-        self._tell = tell
-
-    def of(self, share: float, text: str, action: Callable[[], _Found]) -> _Found:
-        """What an action gives, after telling of it."""
-        if self._tell is not None:
-            self._tell(text, share)
-        return action()
 
 
 def pose_gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
 from flexstage.control.systems.system import System, connect, rename, select, static
 from flexstage.models.linear.model import Channel
@@ -19,6 +20,10 @@ class LoopBreak(Enum):
 
     POSE = "pose"
     COMMAND = "command"
+
+    def channels(self, given: Plant) -> tuple[Channel, ...]:
+        """Signals of a plant's loop there."""
+        return given.coordinates.motions("pose.") if self is LoopBreak.POSE else given.coordinates.commands("command.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,11 +75,12 @@ def loop(given: Plant, controller: System) -> Loop:
     """
     require(_findings(given, controller))
     wanted = [name for name in controller.input_names if not name.startswith("applied.")]
-    wired = select(controller, wanted, _commands(given))
+    at, commands = given.coordinates, _names(LoopBreak.COMMAND.channels(given))
+    wired = select(controller, wanted, commands)
     plant_held = zero_order_hold(given)
-    inputs = (*_channels("reference", given), *_noises(given), *_disturbances(given))
-    outputs = (*plant_held.output_names[len(given.gauges) :], *given.gauges, *_names("pose", given), *_names("error", given))
-    system = connect(*_wiring(given, plant_held, wired), inputs, (*outputs, *_commands(given), *given.actuators))
+    poses = _names((*at.motions("pose."), *at.motions("error.")))
+    outputs = (*plant_held.output_names[len(given.gauges) :], *given.gauges, *poses, *commands, *given.actuators)
+    system = connect(*_wiring(given, plant_held, wired), _entries(given), outputs)
     return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
 
 
@@ -93,12 +99,10 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     >>> bool(np.allclose(at_pose.transfer(far), at_command.transfer(far)))  # one input, one output: the same loop from both places
     True
     """
-    given = closed.plant
-    outer = _names("pose", given) if cut is LoopBreak.POSE else _commands(given)
-    short = [name.removeprefix(f"{cut.value}.") for name in outer]
-    if channel is not None and channel not in short:
-        require([Finding(channel, f"the loop has no such {cut.value}", suggest_nearest(channel, short))])
-    return _loop_cut(closed, [name for name, each in zip(outer, short, strict=True) if channel is None or channel == each])
+    outer = {each.name.removeprefix(f"{cut.value}."): each for each in cut.channels(closed.plant)}
+    if channel is not None and channel not in outer:
+        raise refuse(channel, f"the loop has no such {cut.value}", suggest_nearest(channel, outer))
+    return _loop_cut(closed, outer.values() if channel is None else [outer[channel]])
 
 
 def open_everywhere(closed: Loop) -> System:
@@ -109,22 +113,19 @@ def open_everywhere(closed: Loop) -> System:
     >>> found.input_names, found.output_names
     (('cut.x', 'cut.B'), ('pose.x', 'command.B'))
     """
-    return _loop_cut(closed, [*_names("pose", closed.plant), *_commands(closed.plant)])
+    return _loop_cut(closed, [*LoopBreak.POSE.channels(closed.plant), *LoopBreak.COMMAND.channels(closed.plant)])
 
 
-def _loop_cut(closed: Loop, chosen: list[str]) -> System:
+def _loop_cut(closed: Loop, chosen: Iterable[Channel]) -> System:
     """Open at these signals, the sign turned: what comes back is subtracted."""
     given = closed.plant
     systems, links = _wiring(given, closed.held, closed.controller)
-    outer = dict(
-        zip((*_names("pose", given), *_commands(given)), (*_units(given, LoopBreak.POSE), *_units(given, LoopBreak.COMMAND)), strict=True)
-    )
-    swapped = {name: f"cut.{name.partition('.')[2]}" for name in chosen}
-    zero = {channel.name for channel in (*_channels("reference", given), *_noises(given), *_disturbances(given))}
+    entries = {each.name: replace(each, name=f"cut.{each.name.partition('.')[2]}") for each in chosen}
+    swapped, zero = {name: each.name for name, each in entries.items()}, _names(_entries(given))
     changed = {
         entry: {swapped.get(term, term): factor for term, factor in terms.items() if term not in zero} for entry, terms in links.items()
     }
-    found = connect(systems, changed, tuple(Channel(swapped[name], outer[name]) for name in chosen), chosen)
+    found = connect(systems, changed, tuple(entries.values()), swapped)
     return replace(found, C=-found.C, D=-found.D)
 
 
@@ -148,38 +149,25 @@ def _estimate(given: Plant) -> System:
     """Readings with their noise, and the pose from them; the error."""
     gauges, entry = given.coordinates.readings(), given.coordinates.readings("gap.")
     gain = np.vstack([np.eye(len(gauges)), given.coordinates.pose])
-    return static(gain, entry, (*gauges, *_channels("pose", given)), given.hardware.step)
+    return static(gain, entry, (*gauges, *given.coordinates.motions("pose.")), given.hardware.step)
 
 
 def _sums(given: Plant) -> System:
     """What a hold gives on, and the error."""
-    entry = (*given.coordinates.commands("entry."), *_channels("difference", given))
-    exit_ = (*given.coordinates.commands(), *_channels("error", given))
+    entry = (*given.coordinates.commands("entry."), *given.coordinates.motions("difference."))
+    exit_ = (*given.coordinates.commands(), *given.coordinates.motions("error."))
     return static(np.eye(len(entry)), entry, exit_, given.hardware.step)
 
 
-def _names(kind: str, given: Plant) -> tuple[str, ...]:
-    return tuple(f"{kind}.{name}" for name in given.coordinates.names)
+def _names(channels: Iterable[Channel]) -> tuple[str, ...]:
+    return tuple(each.name for each in channels)
 
 
-def _channels(kind: str, given: Plant) -> tuple[Channel, ...]:
-    return tuple(Channel(name, unit) for name, unit in zip(_names(kind, given), given.coordinates.units, strict=True))
-
-
-def _commands(given: Plant) -> tuple[str, ...]:
-    return tuple(f"command.{name}" for name in given.actuators)
-
-
-def _units(given: Plant, cut: LoopBreak) -> tuple[str, ...]:
-    return given.coordinates.units if cut is LoopBreak.POSE else tuple(channel.unit for channel in given.coordinates.commands())
-
-
-def _noises(given: Plant) -> tuple[Channel, ...]:
-    return (*given.coordinates.readings("noise."), *given.coordinates.commands("noise."))
-
-
-def _disturbances(given: Plant) -> tuple[Channel, ...]:
-    return tuple(channel for channel in given.system.inputs if channel.name not in given.actuators)
+def _entries(given: Plant) -> tuple[Channel, ...]:
+    """References, noise of gauges and actuators, disturbances."""
+    at = given.coordinates
+    disturbances = (channel for channel in given.system.inputs if channel.name not in given.actuators)
+    return (*at.motions("reference."), *at.readings("noise."), *at.commands("noise."), *disturbances)
 
 
 def _states(given: Plant, plant: System, controller: System) -> tuple[str, ...]:
@@ -199,7 +187,8 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
     elif abs(controller.step / given.hardware.step - 1.0) > 1e-9:
         what = f"its step is {controller.step:g} s, the hardware's {given.hardware.step:g} s"
         found.append(Finding("controller", what, "Give both one rate"))
-    known = [*_names("error", given), *_names("reference", given), *_names("pose", given), *(f"applied.{name}" for name in given.actuators)]
+    at = given.coordinates
+    known = _names((*at.motions("error."), *at.motions("reference."), *at.motions("pose."), *at.commands("applied.")))
     return [
         *found,
         *(
@@ -209,7 +198,7 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
         ),
         *(
             Finding("controller", f"it has no output {name}", "Give a command to every actuator, zero if need be")
-            for name in _commands(given)
+            for name in _names(LoopBreak.COMMAND.channels(given))
             if name not in controller.output_names
         ),
     ]

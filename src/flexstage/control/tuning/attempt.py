@@ -13,15 +13,15 @@ import numpy as np
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised
-from flexstage.control.controllers.family import Family, Place
+from flexstage.control.controllers.family import Place
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, estimator, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
-from flexstage.control.tuning.laws import laws
-from flexstage.control.tuning.spec import Judgement, Kind, TuningSpec
+from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
+from flexstage.control.tuning.spec import Judgement, TuningSpec
 from flexstage.control.tuning.view import View
 
 _HIGH = 0.3
@@ -50,23 +50,8 @@ _WIDTHS = (0.4, 0.6, 0.9, 1.4)
 """Dampings of notches' poles that are tried: the gain is below 0.7 over about twice that share of the frequency."""
 _UNSTATED = Disturbances(1e-9, {})
 """What an observer expects where nothing is stated."""
-_Sets: TypeAlias = tuple[tuple[Notch, ...], ...]
-_Options: TypeAlias = tuple[_Sets, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Task:
-    """A tuning task: kind and specification; `notches` in every loop, and whether more are placed on modes; the rest of the controller.
-
-    `expected` is what an observer expects, `feedforward` (n, f) the strokes by which the reference is fed forward.
-    """
-
-    kind: Kind | Family
-    spec: TuningSpec
-    notches: tuple[Notch, ...] = ()
-    automatic: bool = True
-    expected: Disturbances | None = None
-    feedforward: Array | None = None
+_Options: TypeAlias = tuple[tuple[tuple[Notch, ...], ...], ...]
+"""By loop, sets of notches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +70,7 @@ class Attempt:
 
     @cached_property
     def judgement(self) -> Judgement:
-        """How it comes out."""
+        """The verdict on its loop."""
         return judge_loop(self.seen, self.system, self.gains)
 
     def reaches(self, frequency: float, spec: TuningSpec) -> bool:
@@ -94,8 +79,9 @@ class Attempt:
         return passed and keeps_peak(self.seen, lambda: self.system, self.gains, spec.sensitivity)
 
 
-def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
-    """The best that the kind can do where every loop's gain passes 1 at a frequency [Hz]; None where it has no law for it.
+@dataclass(frozen=True, eq=False)
+class BandwidthTrial:
+    """Controllers of a specification whose loops' gains all pass 1 at a `frequency` [Hz], as the plant that is `seen` lets them.
 
     First with the stated notches only, then with more on the modes that stand out of a loop with a gain above 0.3, as wide as does best.
     A loop's best law is the one with the lowest peak of S; of those with peaks up to `calm` the one with the highest gain at rest.
@@ -104,49 +90,112 @@ def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Atte
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.view import view
     >>> plant = integral_loop().plant
-    >>> found = attempt(view(plant, platform_loops(plant.coordinates), 0.0), Task(Kind.PI, TuningSpec()), 20.0)
+    >>> seen = view(plant, platform_loops(plant.coordinates), 0.0)
+    >>> found = BandwidthTrial(seen, TuningSpec(PI_FAMILY), 20.0).best()
     >>> round(found.judgement.bandwidths[0], 1), found.notches
     (20.0, ((),))
+    >>> BandwidthTrial(seen, TuningSpec(PI_FAMILY), 2000.0).reach() is None
+    True
     """
-    tried: list[Attempt] = []
-    for found in _attempts(seen, task, frequency, calm):
-        if found.reaches(frequency, task.spec):
-            return found
-        tried.append(found)
-    return min(tried, key=lambda each: each.judgement.score, default=None)
 
+    seen: View
+    spec: TuningSpec
+    frequency: float
 
-def reach(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
-    """A controller that reaches a frequency [Hz] within the specification; None where the kind has none. Faster than to find the nearest.
+    def best(self) -> Attempt | None:
+        """The first attempt that reaches the frequency within the specification, or the nearest; None without a law for it."""
+        tried: list[Attempt] = []
+        for found in self._attempts(0.0):
+            if found.reaches(self.frequency, self.spec):
+                return found
+            tried.append(found)
+        return min(tried, key=lambda each: each.judgement.score, default=None)
 
-    >>> from flexstage.control.controllers.loops import platform_loops
-    >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.tuning.view import view
-    >>> plant = integral_loop().plant
-    >>> seen = view(plant, platform_loops(plant.coordinates), 0.0)
-    >>> reach(seen, Task(Kind.PI, TuningSpec()), 20.0) is None, reach(seen, Task(Kind.PI, TuningSpec()), 2000.0) is None
-    (False, True)
-    """
-    return next((found for found in _attempts(seen, task, frequency, calm) if found.reaches(frequency, task.spec)), None)
+    def reach(self, calm: float = 0.0) -> Attempt | None:
+        """The first attempt that reaches the frequency within the specification. Faster than to find the nearest."""
+        return next((found for found in self._attempts(calm) if found.reaches(self.frequency, self.spec)), None)
 
+    def _attempts(self, calm: float) -> Iterator[Attempt]:
+        """Attempts, the simplest first."""
+        if self.spec.family == LQG_FAMILY:
+            yield from _attempts_lqg(self.seen, self.spec, self.frequency)
+            return
+        first = self._decentralised(calm, ((self.spec.notches,),) * len(self.seen.loops.names))
+        if first is None:
+            return
+        yield first
+        if self.spec.automatic and self.spec.family.notched:
+            every = (self._decentralised(calm, options) for options in _choices(_place_notches(self.seen, first, self.frequency)))
+            yield from (each for each in every if each is not None)
 
-def _attempts(seen: View, task: Task, frequency: float, calm: float) -> Iterator[Attempt]:
-    """What the kind can do, from what is simplest on."""
-    if task.kind is Kind.LQG:
-        yield from _attempts_lqg(seen, task, frequency)
-        return
-    stated: _Options = ((task.notches,),) * len(seen.loops.names)
-    first = _decentralised(seen, task, frequency, calm, stated)
-    if first is None:
-        return
-    yield first
-    if task.automatic and _is_notched(task.kind):
-        found = (_decentralised(seen, task, frequency, calm, options) for options in _choices(_place_notches(seen, first, frequency)))
-        yield from (each for each in found if each is not None)
+    def _decentralised(self, calm: float, options: _Options) -> Attempt | None:
+        """The best law of each loop, and all loops together."""
+        seen, found = self.seen, list[_Chosen]()
+        for loop in range(len(options)):
+            alike = _first_alike(seen, options, loop)
+            one = found[alike] if alike < loop else self._choose(options[loop], loop, calm)
+            if one is None:
+                return None
+            found.append(one)
+        notches = tuple(each.notches for each in found)
+        laws = tuple(each.law for each in found)
+        controller = Decentralised(seen.loops, laws, notches if any(notches) else (), self.spec.feedforward)
+        gains = seen.driven * np.stack([each.response for each in found], axis=-1)[:, None, :]
+        return Attempt(seen, controller, gains, notches)
 
+    def _choose(self, sets: tuple[tuple[Notch, ...], ...], loop: int, calm: float) -> _Chosen | None:
+        """Law and notches whose isolated loop is stable, passes 1 there, and has the lowest peak of S, wherever the modes may lie.
 
-def _is_notched(kind: Kind | Family) -> bool:
-    return kind.notched if isinstance(kind, Family) else kind is not Kind.RESONANT
+        Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
+        """
+        best, lowest = None, (np.inf, 0.0)
+        for each in chain.from_iterable(self._candidates(loop, notches) for notches in sets):
+            slack = -float(np.abs(each.response[0])) if calm else 0.0
+            score = (max(calm, each.nominal), slack)
+            if score < lowest and len(self.seen.offsets) > 1:
+                score = (max(score[0], each.everywhere), slack)
+            if score < lowest:
+                best, lowest = each, score
+        return best
+
+    def _candidates(self, loop: int, notches: tuple[Notch, ...]) -> tuple[_Chosen, ...]:
+        """All laws of the family with these notches, kept: other sets of notches and integrators choose from the same."""
+        if (loop, notches) in self._known:
+            return self._known[loop, notches]
+        seen, frequency = self.seen, self.frequency
+        filters = [_sampled_notch(seen, notch) for notch in notches]
+        gain = complex(self._gains[loop]) * complex(np.prod([each.transfer(np.array([frequency]))[0, 0, 0] for each, _ in filters]))
+        first = next((each.frequency for each in seen.resonances[loop]), None)
+        place = Place(frequency, gain, float(seen.static[loop]), first)
+        filtered = np.prod([response for _, response in filters], axis=0) if filters else 1.0
+        possible = [(law, response * filtered) for law, response in self._responses(place) if response is not None]
+        scores = _scores(seen.frequencies, np.stack([whole for _, whole in possible]) * seen.own[0, :, loop], frequency) if possible else ()
+        self._known[loop, notches] = tuple(
+            _Chosen(law, notches, whole, float(score), lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
+            for (law, whole), score in zip(possible, scores, strict=True)
+        )
+        return self._known[loop, notches]
+
+    def _responses(self, place: Place) -> list[tuple[Law, Array | None]]:
+        """Laws with their responses (f,), None of those too fast for the samples; PI and PID at one frequency differ by a factor alone."""
+        laws = self.spec.family.laws(place, self.seen.step)
+        if self.spec.family not in (PI_FAMILY, PID_FAMILY):
+            return [(law, _sampled_response(law, self.seen)) for law in laws]
+        size = 1.0 / abs(place.gain)
+        return [(law, None if unit is None else size * unit) for law, unit in zip(laws, self._units, strict=True)]
+
+    @cached_property
+    def _units(self) -> list[Array | None]:
+        unit = self.spec.family.laws(Place(self.frequency, 1.0, 1.0, None), self.seen.step)
+        return [_sampled_response(law, self.seen) for law in unit]
+
+    @cached_property
+    def _gains(self) -> Array:
+        return self.seen.at(self.frequency)
+
+    @cached_property
+    def _known(self) -> dict[tuple[int, tuple[Notch, ...]], tuple[_Chosen, ...]]:
+        return {}
 
 
 def _choices(options: _Options) -> Iterator[_Options]:
@@ -155,32 +204,6 @@ def _choices(options: _Options) -> Iterator[_Options]:
         yield options
         for number in range(max(map(len, options))):
             yield tuple(sets[min(number, len(sets) - 1) :][:1] for sets in options)
-
-
-def _decentralised(seen: View, task: Task, frequency: float, calm: float, options: _Options) -> Attempt | None:
-    at = seen.at(frequency)
-    found: list[_Chosen] = []
-    for loop, sets in enumerate(options):
-        alike = _first_alike(seen, options, loop)
-        if alike < loop:
-            found.append(found[alike])
-            continue
-        one = _choose(seen, task.kind, sets, loop=loop, frequency=frequency, calm=calm, gain=complex(at[loop]))
-        if one is None:
-            return None
-        found.append(one)
-    key = (*map(id, found), id(task.feedforward))
-    if key not in seen.tried:  # what was found is kept there too, so that no other has its place in memory
-        seen.tried[key] = _together(seen, task, found)
-    return seen.tried[key]
-
-
-def _together(seen: View, task: Task, found: list[_Chosen]) -> Attempt:
-    """The loops at once, judged."""
-    notches = tuple(each.notches for each in found)
-    controller = Decentralised(seen.loops, tuple(each.law for each in found), notches if any(notches) else (), task.feedforward)
-    gains = seen.driven * np.stack([each.response for each in found], axis=-1)[:, None, :]
-    return Attempt(seen, controller, gains, notches)
 
 
 def _first_alike(seen: View, options: _Options, loop: int) -> int:
@@ -212,68 +235,12 @@ class _Chosen:
         return self.score(self.response)
 
 
-def _choose(seen: View, kind: Kind | Family, options: _Sets, *, loop: int, frequency: float, calm: float, gain: complex) -> _Chosen | None:
-    """Law and notches whose loop by itself is stable, passes 1 where it shall, and has the lowest peak of S, wherever the modes may lie.
-
-    Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
-    """
-    best, lowest = None, (np.inf, 0.0)
-    for each in chain.from_iterable(_known(seen, kind, notches, loop=loop, frequency=frequency, gain=gain) for notches in options):
-        slack = -float(np.abs(each.response[0])) if calm else 0.0
-        score = (max(calm, each.nominal), slack)
-        if score < lowest and len(seen.offsets) > 1:
-            score = (max(score[0], each.everywhere), slack)
-        if score < lowest:
-            best, lowest = each, score
-    return best
-
-
-def _known(
-    seen: View, kind: Kind | Family, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex
-) -> tuple[_Chosen, ...]:
-    """All laws of a kind with these notches, kept as long as the search stays at the frequency."""
-    if seen.tried.get("frequency") != frequency:
-        seen.tried.clear()
-        seen.tried["frequency"] = frequency
-    key = (kind, loop, notches)
-    if key not in seen.tried:
-        seen.tried[key] = tuple(_candidates(seen, kind, notches, loop=loop, frequency=frequency, gain=gain))
-    return seen.tried[key]
-
-
-def _candidates(
-    seen: View, kind: Kind | Family, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex
-) -> Iterator[_Chosen]:
-    static = float(seen.static[loop])
-    first = next((each.frequency for each in seen.resonances[loop]), None)
-    filtered = np.prod([_sampled_notch(seen, notch)[1] for notch in notches], axis=0) if notches else 1.0
-    notched = gain * complex(np.prod([_sampled_notch(seen, notch)[0].transfer(np.array([frequency]))[0, 0, 0] for notch in notches]))
-    known = _law_responses(seen, kind, Place(frequency, notched, static, first))
-    possible = [(law, response * filtered) for law, response in known if response is not None]
-    if not possible:
-        return
-    nominal = _scores(seen.frequencies, np.stack([whole for _, whole in possible]) * seen.own[0, :, loop], frequency)
-    for (law, whole), score in zip(possible, nominal.tolist(), strict=True):
-        yield _Chosen(law, notches, whole, score, lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
-
-
 def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
     """It and its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
     if notch not in seen.kept:
         found = notch.system(seen.step)
         seen.kept[notch] = found, resolvent(found).at(seen.frequencies)[:, 0, 0]
     return seen.kept[notch]
-
-
-def _law_responses(seen: View, kind: Kind | Family, place: Place) -> list[tuple[Law, Array | None]]:
-    """Laws with their responses (f,), None of those too fast for the samples; PI and PID at one frequency differ by a factor alone."""
-    found = laws(kind, place, seen.step)
-    if kind not in (Kind.PI, Kind.PID):
-        return [(law, _sampled_response(law, seen)) for law in found]
-    if kind not in seen.tried:
-        seen.tried[kind] = [_sampled_response(law, seen) for law in laws(kind, replace(place, gain=1.0), seen.step)]
-    size = 1.0 / abs(place.gain)
-    return [(law, None if unit is None else size * unit) for law, unit in zip(found, seen.tried[kind], strict=True)]
 
 
 def _sampled_response(law: Law, seen: View) -> Array | None:
@@ -334,12 +301,12 @@ def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
     return tuple(sets or (given,) for sets, given in zip(result, found.notches, strict=True)) if any(result) else ()
 
 
-def _attempts_lqg(seen: View, task: Task, frequency: float) -> Iterator[Attempt]:
+def _attempts_lqg(seen: View, spec: TuningSpec, frequency: float) -> Iterator[Attempt]:
     """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
     driven = driven_gains(seen, frequency)
     first = wanted = frequency / driven
-    for trust in _trusts(seen, task, frequency, driven):
-        design = _designer(seen, task, trust)
+    for trust in _trusts(seen, spec, frequency, driven):
+        design = _designer(seen, spec, trust)
         found, wanted = _balance_bandwidths(seen, design, frequency, wanted, first)
         if found is not None:
             gains = seen.responses @ _strokes(seen, found, design.estimates, seen.frequencies)
@@ -359,9 +326,9 @@ def driven_gains(seen: View, frequency: float) -> Array:
     return np.linalg.norm(seen.loops.sense @ seen.systems[0].transfer(np.array([frequency]))[0], axis=1)
 
 
-def _trusts(seen: View, task: Task, frequency: float, driven: Array) -> tuple[float, ...]:
+def _trusts(seen: View, spec: TuningSpec, frequency: float, driven: Array) -> tuple[float, ...]:
     """How many times the noise that is expected of them strokes have in turn, over decades where gauges are loud."""
-    expected = task.expected or _UNSTATED
+    expected = spec.expected or _UNSTATED
     heard = np.abs(seen.loops.sense @ seen.loops.coordinates.pose) @ np.array(
         [expected.gauges[name] for name in seen.loops.coordinates.gauges]
     )
@@ -377,7 +344,7 @@ class _Designer:
     """Regulators for an `observer`, which is the same at every bandwidth, and so are the `responses` of its states."""
 
     seen: View
-    task: Task
+    spec: TuningSpec
     expected: Disturbances
     observer: Array
     responses: Resolvent
@@ -396,18 +363,18 @@ class _Designer:
     def __call__(self, wanted: Array, frequency: float) -> LQG:
         """The controller with these weights (k,) [Hz], whose integrators follow what was applied as fast as loops do that pass 1 there."""
         model, coordinates = self.seen.systems[0], self.seen.loops.coordinates
-        found = with_observer(model, coordinates, Weights(tuple(map(float, wanted))), self.observer, self.task.feedforward)
+        found = with_observer(model, coordinates, Weights(tuple(map(float, wanted))), self.observer, self.spec.feedforward)
         return replace(found, tracking=1.0 / (2.0 * np.pi * frequency), expected=self.expected)
 
 
-def _designer(seen: View, task: Task, trust: float) -> _Designer:
-    expected = task.expected or _UNSTATED
+def _designer(seen: View, spec: TuningSpec, trust: float) -> _Designer:
+    expected = spec.expected or _UNSTATED
     looser = Disturbances(expected.strokes * trust, expected.gauges)
     model, coordinates = seen.systems[0], seen.loops.coordinates
     key = (looser.strokes, *looser.gauges.items())
     if key not in seen.kept:
         observer = observer_gain(model, coordinates, looser)
-        seen.kept[key] = _Designer(seen, task, looser, observer, resolvent(estimator(model, observer)))
+        seen.kept[key] = _Designer(seen, spec, looser, observer, resolvent(estimator(model, observer)))
     return seen.kept[key]
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.control.tuning.judge import first_rise
 from flexstage.control.tuning.shape import Shape
 
 BAND, _BAND_OFF = 0.0172, 0.0185
@@ -46,38 +48,114 @@ class Bounds:
 
 @dataclass(frozen=True, eq=False)
 class OneLoop:
-    """A loop as the others leave it: C times its `plants` (v, f) is its open loop, S = 1/(1 + C g), at `frequencies` (v, f) [Hz].
+    """A loop with the others closed: a `point` of a shape, C times its `plants` (v, f) being its open loop at `frequencies` (v, f) [Hz].
 
-    `limits` (v,) are those of |S|. `slow` (w, h) are plants at the even frequencies `lines` (h,) [Hz] of steps, from 0 to half the rate;
-    `disturbed` and `heard` (f,) are the mean squares that S and T of the first plant leave of the floor and of the gauges.
+    `slow` (w, h) are plants at the even `lines` (h,) [Hz] of steps, from 0, where there is none, to half the rate; `disturbed` and `heard`
+    (f,) are the mean squares that S and T of the first plant leave of the floor and of the gauges.
     """
 
     shape: Shape
+    point: Array
     frequencies: Array
     plants: Array
-    limits: Array
     lines: Array
     slow: Array
     disturbed: Array
     heard: Array
+
+    @cached_property
+    def sensitivity(self) -> Array:
+        """S (v, f)."""
+        return 1.0 / (1.0 + self.plants * self.shape.value(self.point, self.frequencies))
+
+    @cached_property
+    def following(self) -> Array:
+        """T (w, h), 1 at rest."""
+        loops = self.slow * self.shape.value(self.point, self.lines[1:])
+        return np.concatenate([np.ones((len(loops), 1)), loops / (1.0 + loops)], axis=-1)
 
     @property
     def interval(self) -> float:
         """Time between samples of steps [s]."""
         return 0.5 / float(self.lines[-1])
 
-    def sensitivities(self, point: Array) -> Array:
-        """S (v, f)."""
-        return 1.0 / (1.0 + self.plants * self.shape.value(point, self.frequencies))
+    @property
+    def rejection(self) -> float:
+        """The frequency [Hz] where |S| of the model first rises through 1."""
+        return first_rise(np.abs(self.sensitivity[0]), self.frequencies[0])
 
-    def steps(self, point: Array) -> Array:
-        """Answers (w, n) to a step, without the slowest that a period of them does not hold."""
-        return _steps(_following(self.slow[:, 1:] * self.shape.value(point, self.lines[1:]), 1.0))
+    @property
+    def rms(self) -> float:
+        """Rms at rest."""
+        return self._rms(self.sensitivity[0])
 
-    def noise(self, point: Array) -> float:
-        """Mean square at rest."""
-        own = self.sensitivities(point)[0]
-        return float(np.sum(self.disturbed * np.abs(own) ** 2 + self.heard * np.abs(1.0 - own) ** 2))
+    @property
+    def settling(self) -> float:
+        """When a step of the model stays within the band [s], one sample at least."""
+        outside = np.flatnonzero(np.abs(_steps(self.following)[0] - 1.0) > BAND)
+        return self.interval * (1.0 + (float(outside[-1]) if len(outside) else 0.0))
+
+    def _rms(self, own: Array) -> float:
+        square = float(np.sum(self.disturbed * np.abs(own) ** 2 + self.heard * np.abs(1.0 - own) ** 2))
+        return max(float(np.sqrt(square)), 1e-300)
+
+    def misfits(
+        self, bounds: Bounds, quiet: float, near: tuple[Array, Array], slow: tuple[Array, Callable[[], Array]]
+    ) -> Iterator[tuple[Array, Array]]:
+        """Residuals over all bounds but peaks of S, with their derivatives; `quiet` is the weight of noise.
+
+        From S (n, f) of plants that reject and T (w, h); dS = -S T slopes, with their slopes (p, n, f), (p, w, h - 1).
+        """
+        own, slopes = near
+        above = self._rejected(bounds) & (np.abs(own) > _BELOW)
+        yield _over(own[above], slopes[:, above])
+        yield self._noise(bounds, quiet, own[0], slopes[:, 0])
+        yield from self._settling(bounds, *slow)
+
+    def excess(self, bounds: Bounds) -> float:
+        """The largest relative excess over a bound, but for peaks of S."""
+        sizes, steps = np.abs(self.sensitivity[: bounds.plants]), _steps(self.following)
+        below, late = self._rejected(bounds), self._late(bounds, steps.shape[1])
+        return float(
+            max(
+                np.max(sizes[below], initial=0.0) - _BELOW,
+                self.rms / bounds.noise - 1.0,
+                _SHARE * (np.max((np.abs(steps - 1.0) / _bands(steps))[:, late], initial=0.0) - 1.0),
+                np.max(steps) - 1.0 - bounds.overshoot,
+            )
+        )
+
+    def _rejected(self, bounds: Bounds) -> Array:
+        """Where (n, f) disturbances are to be rejected."""
+        count = bounds.plants
+        return self.frequencies[:count] <= bounds.rejection * np.array([1.0, _LESS])[:count, None]
+
+    def _late(self, bounds: Bounds, count: int) -> Array:
+        return self.interval * np.arange(count) >= bounds.settling
+
+    def _noise(self, bounds: Bounds, quiet: float, own: Array, slopes: Array) -> tuple[Array, Array]:
+        """The rms at rest, and by how much it is too high: dS = -S T dlnC, dT = S T dlnC."""
+        rest, rms = 1.0 - own, self._rms(own)
+        change = np.real((self.heard * np.conj(rest) - self.disturbed * np.conj(own)) * own * rest * slopes).sum(axis=-1) / rms
+        over = rms / bounds.noise - 1.0
+        if over <= 0.0:
+            return np.array([quiet * rms]), quiet * change[:, None]
+        return np.array([quiet * rms, STIFF * over]), np.stack([quiet * change, STIFF / bounds.noise * change], axis=-1)
+
+    def _settling(self, bounds: Bounds, following: Array, slopes: Callable[[], Array]) -> Iterator[tuple[Array, Array]]:
+        """Of steps, what is outside its band late, and above the overshoot."""
+        steps = _steps(following)
+        every = max(1, steps.shape[1] // _SAMPLES)
+        late = self._late(bounds, steps.shape[1])[every - 1 :: every]
+        off = steps[:, every - 1 :: every] - 1.0
+        bands = _bands(off)
+        outside, above = late & (np.abs(off) > bands), off > bounds.overshoot
+        if not np.any(outside) and not np.any(above):
+            return
+        moved = _summed((following * (1.0 - following))[:, 1:] * slopes(), every)
+        side = np.sign(off[outside]) / bands[outside]
+        yield _STEPS * (side * off[outside] - 1.0), _STEPS * moved[:, outside] * side
+        yield STIFF * (off[above] - bounds.overshoot), STIFF * moved[:, above]
 
 
 def _bands(steps: Array) -> Array:
@@ -85,12 +163,8 @@ def _bands(steps: Array) -> Array:
     return np.where(np.arange(len(steps)) == 0, BAND, _BAND_OFF)[:, None] * np.ones(steps.shape)
 
 
-def _following(loops: Array, at_rest: float) -> Array:
-    """T = L/(1 + L) (..., h), its value at rest before it."""
-    return np.concatenate([np.full((*loops.shape[:-1], 1), at_rest), loops / (1.0 + loops)], axis=-1)
-
-
 def _steps(following: Array) -> Array:
+    """Answers (w, n) to a step, without the slowest that a period of them does not hold."""
     return np.cumsum(np.fft.irfft(following, axis=-1), axis=-1)
 
 
@@ -144,68 +218,6 @@ def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:
     return cost, gradient, curvature
 
 
-@dataclass(frozen=True, eq=False)
-class Misfit:
-    """What passes the bounds of one loop, squared, with its derivatives."""
-
-    loop: OneLoop
-    bounds: Bounds
-    quiet: float
-
-    def rest(self, own: Array, slopes: Array, following: Array, slow_slopes: Callable[[], Array]) -> Iterator[tuple[Array, Array]]:
-        """All but peaks of S, from S (n, f) of plants that reject and T (w, h); dS = -S T slopes, slopes (p, n, f), (p, w, h - 1)."""
-        near = self._rejected() & (np.abs(own) > _BELOW)
-        yield _over(own[near], slopes[:, near], np.full(int(np.sum(near)), _BELOW))
-        yield self._noise(own[0], slopes[:, 0])
-        yield from self._settling(following, slow_slopes)
-
-    def passed(self, point: Array) -> float:
-        """The largest relative excess over a bound, but for peaks of S."""
-        sizes, steps = np.abs(self.loop.sensitivities(point)[: self.bounds.plants]), self.loop.steps(point)
-        below, late = self._rejected(), self._late(steps.shape[1])
-        return float(
-            max(
-                np.max(sizes[below], initial=0.0) - _BELOW,
-                np.sqrt(self.loop.noise(point)) / self.bounds.noise - 1.0,
-                _SHARE * (np.max((np.abs(steps - 1.0) / _bands(steps))[:, late], initial=0.0) - 1.0),
-                np.max(steps) - 1.0 - self.bounds.overshoot,
-            )
-        )
-
-    def _rejected(self) -> Array:
-        """Where (n, f) disturbances are to be rejected."""
-        count = self.bounds.plants
-        return self.loop.frequencies[:count] <= self.bounds.rejection * np.array([1.0, _LESS])[:count, None]
-
-    def _late(self, count: int) -> Array:
-        return self.loop.interval * np.arange(count) >= self.bounds.settling
-
-    def _noise(self, own: Array, slopes: Array) -> tuple[Array, Array]:
-        """The rms at rest, and by how much it is too high: dS = -S T dlnC, dT = S T dlnC."""
-        one, rest = self.loop, 1.0 - own
-        rms = np.sqrt(max(float(np.sum(one.disturbed * np.abs(own) ** 2 + one.heard * np.abs(rest) ** 2)), 1e-300))
-        change = np.real((one.heard * np.conj(rest) - one.disturbed * np.conj(own)) * own * rest * slopes).sum(axis=-1) / rms
-        over = rms / self.bounds.noise - 1.0
-        if over <= 0.0:
-            return np.array([self.quiet * rms]), self.quiet * change[:, None]
-        return np.array([self.quiet * rms, STIFF * over]), np.stack([self.quiet * change, STIFF / self.bounds.noise * change], axis=-1)
-
-    def _settling(self, following: Array, slopes: Callable[[], Array]) -> Iterator[tuple[Array, Array]]:
-        """Of steps, what is outside its band late, and above the overshoot."""
-        steps = _steps(following)
-        every = max(1, steps.shape[1] // _SAMPLES)
-        late = self._late(steps.shape[1])[every - 1 :: every]
-        off = steps[:, every - 1 :: every] - 1.0
-        bands = _bands(off)
-        outside, above = late & (np.abs(off) > bands), off > self.bounds.overshoot
-        if not np.any(outside) and not np.any(above):
-            return
-        moved = _summed((following * (1.0 - following))[:, 1:] * slopes(), every)
-        side = np.sign(off[outside]) / bands[outside]
-        yield _STEPS * (side * off[outside] - 1.0), _STEPS * moved[:, outside] * side
-        yield STIFF * (off[above] - self.bounds.overshoot), STIFF * moved[:, above]
-
-
 def _summed(spectra: Array, every: int) -> Array:
     """Sums over time (..., n) of what has spectra (..., h), nothing at rest, every so many samples, the last one among them.
 
@@ -227,9 +239,9 @@ def _summed(spectra: Array, every: int) -> Array:
     return found - found[..., -1:]
 
 
-def _over(own: Array, slopes: Array, limits: Array) -> tuple[Array, Array]:
-    """Values of |S| (r,) above limits, and d|S| = -Re(T dlnC) |S|."""
-    size = np.abs(own) / limits
+def _over(own: Array, slopes: Array) -> tuple[Array, Array]:
+    """Values of |S| (r,) above their limit, and d|S| = -Re(T dlnC) |S|."""
+    size = np.abs(own) / _BELOW
     return STIFF * (size - 1.0), -STIFF * np.real((1.0 - own) * slopes) * size
 
 

@@ -149,3 +149,16 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
         return 0.0
     ends = slice(first - 1, first + 1)
     return float(np.exp(np.interp(0.0, -np.log(gains[ends]), np.log(frequencies[ends]))))
+
+
+def first_rise(sizes: Array, frequencies: Array) -> float:
+    """Where a size first rises through 1, straight in the logarithms; an end of the frequencies where it starts above or never does.
+
+    >>> round(first_rise(np.array([0.1, 0.8, 10.0]), np.array([1.0, 10.0, 100.0])), 2)
+    12.26
+    """
+    above = np.flatnonzero(sizes >= 1.0)
+    if not len(above) or not above[0]:
+        return float(frequencies[0 if len(above) else -1])
+    ends = slice(int(above[0]) - 1, int(above[0]) + 1)
+    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(frequencies[ends]))))

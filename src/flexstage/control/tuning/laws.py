@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 
 from flexstage.control.controllers.family import Family, Place, tracking_gain, warped
-from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.resonant import IntegralResonant, resonant_law
-from flexstage.control.tuning.spec import Kind
 
 _PI_ANGLES = np.radians(np.arange(0.0, 81.0, 16.0))
 """From integral control alone to nearly proportional control: six laws."""
@@ -23,31 +24,21 @@ _BELOW = 0.4
 """A derivative is filtered at ten times the crossing, which takes 5.7 deg, at most at 0.4 of the rate, where Tustin's rule keeps it."""
 
 
-def laws(kind: Kind | Family, place: Place, step: float | None) -> list[Law]:
-    """Laws C with |C g| = 1 at the place, sampled as they will be.
+def pi_laws(place: Place, step: float | None) -> list[PI]:
+    """PI with |C g| = 1 at the place, sampled as they will be: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a.
 
-    PI: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a. PID: these without a derivative, and two equal zeros at w/tan(a/2), filtered at
-    ten times the frequency or at most 0.4 of the sampling rate. Integral resonant control: dampings of the first resonance, feed-throughs
-    and corners besides, and the tracking gain that is left. A family's are its own. None where the kind has no such law.
-
-    >>> [found.integral for found in laws(Kind.PI, Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), None)][:1]
+    >>> [found.integral for found in pi_laws(Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), None)][:1]
     [2.0]
     """
-    if isinstance(kind, Family):
-        return list(kind.laws(place, step))
-    turning = warped(place.frequency, step)
-    size = 1.0 / abs(place.gain)
-    if kind is Kind.PI:
-        return list(_pis(size, turning))
-    if kind is Kind.PID:
-        corner = _FILTER * place.frequency if step is None else min(_FILTER * place.frequency, _BELOW / step)
-        without = [PID(each.proportional, each.integral, 0.0, corner) for each in _pis(size, turning)]
-        return [*without, *(_pid(place, turning, float(angle), corner) for angle in _PID_ANGLES)]
-    return _resonant(place, turning, step)
-
-
-def _pis(size: float, turning: float) -> list[PI]:
+    size, turning = 1.0 / abs(place.gain), warped(place.frequency, step)
     return [PI(size * float(np.sin(angle)), size * turning * float(np.cos(angle))) for angle in _PI_ANGLES]
+
+
+def pid_laws(place: Place, step: float | None) -> list[PID]:
+    """PI without a derivative, and two equal zeros at w/tan(a/2); filtered at ten times the frequency, at most 0.4 of the rate."""
+    corner = _FILTER * place.frequency if step is None else min(_FILTER * place.frequency, _BELOW / step)
+    without = [PID(each.proportional, each.integral, 0.0, corner) for each in pi_laws(place, step)]
+    return [*without, *(_pid(place, warped(place.frequency, step), float(angle), corner) for angle in _PID_ANGLES)]
 
 
 def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
@@ -58,9 +49,10 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
     return PID(unit.proportional * gain, gain, unit.derivative * gain, corner)
 
 
-def _resonant(place: Place, turning: float, step: float | None) -> list[Law]:
+def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
     """Laws of most damping first, then others of several feed-throughs and corners; the tracking gain k solves |k/(j w) - Q| = 1/|g|."""
-    found: list[Law] = []
+    found: list[IntegralResonant] = []
+    turning = warped(place.frequency, step)
     if place.resonance is None or not place.static > 0.0:
         return found
     corner = 2.0 * np.pi * place.resonance
@@ -76,3 +68,13 @@ def _resonant(place: Place, turning: float, step: float | None) -> list[Law]:
         if tracking is not None:
             found.append(IntegralResonant(each.gain, each.feedthrough, tracking))
     return found
+
+
+PI_FAMILY = Family("PI", pi_laws)
+PID_FAMILY = Family("PID", pid_laws, others="LQG", steps=(1.14, 2.0))
+"""A loop with lead may pass 1 between modes, in ranges that are narrow."""
+RESONANT_FAMILY = Family("integral resonant control", resonant_laws, notched=False, others="PI with notches, or LQG")
+LQG_FAMILY = Family("LQG", lambda _, __: (), others="less noise of the gauges", steps=(1.6, 4.0))
+"""Tuned by its weights; coarser steps, as each takes longer."""
+FAMILIES: Mapping[str, Family] = MappingProxyType({"pi": PI_FAMILY, "pid": PID_FAMILY, "resonant": RESONANT_FAMILY, "lqg": LQG_FAMILY})
+"""Families by the word of a set-up file; `CONTROLLERS` has the others."""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from enum import Enum
 
+SENSITIVITY = 2.0
+"""Highest peak of S where none is stated: 6 dB."""
+
 
 class TuningObjective(Enum):
     """Objective of optimisation-based tuning, within the required margins."""

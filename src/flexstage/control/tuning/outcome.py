@@ -9,23 +9,13 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System
-from flexstage.control.tuning.judge import highest_gain
+from flexstage.control.tuning.judge import first_rise, highest_gain
 from flexstage.control.tuning.search import Field
 from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel
 
 _BAND = 0.02
 """Within which steps are settled."""
-
-
-@dataclass(frozen=True, eq=False)
-class Bench:
-    """The field of a search with all strokes: `plants` (v, f, k, n) and `slow` (w, h, k, n) from strokes to loops, none at rest."""
-
-    seen: View
-    field: Field
-    plants: Array
-    slow: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,53 +35,35 @@ class Outcome:
     delay_margin: Array
 
 
-def bench(seen: View, within: Field) -> Bench:
-    """The view's plants at the field's frequencies."""
-    systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
-    sense = seen.loops.sense
-    plants = [
-        sense @ systems[each.offset].at(at) * each.factor(at)[:, None, None]
-        for each, at in zip(within.variants, within.frequencies, strict=True)
-    ]
-    offsets = tuple(within.variants[place].offset for place in _spread(within))
-    return Bench(seen, within, np.stack(plants), np.stack([sense @ systems[each].at(within.lines[1:]) for each in offsets]))
-
-
-def _spread(within: Field) -> list[int]:
-    """Variants of which only the modes are off, and no farther than the spread; the model first."""
-    cases = enumerate(within.variants)
-    return [place for place, each in cases if abs(each.offset) <= within.spec.spread and each.gain == 1.0 and not each.later]
-
-
-def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
+def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
     """What a stable loop comes to, its controller's outputs times `gain`; whether it is stable is not asked here.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.search import field
     >>> from flexstage.control.tuning.view import view
-    >>> from flexstage.control.tuning.search_spec import SearchSpec
+    >>> from flexstage.control.tuning.laws import PI_FAMILY
+    >>> from flexstage.control.tuning.spec import TuningSpec
     >>> closed = integral_loop(gain=100.0)
     >>> seen = view(closed.plant, platform_loops(closed.plant.coordinates), 0.0)
-    >>> found = outcome(bench(seen, field(seen, SearchSpec(spread=0.0), {})), closed.controller)
+    >>> found = outcome(field(seen, TuningSpec(PI_FAMILY, spread=0.0)), closed.controller)
     >>> bool(found.peaks[0] < 2.0), float(found.overshoot[0].round(2)), bool(found.settling[0] < 0.06)
     (True, 0.0, True)
     """
-    within, count = tried.field, len(tried.seen.loops.names)
-    responses, eye = resolvent(_entered(tried.seen, control)), np.eye(count)
+    count, coordinates = len(within.seen.loops.names), within.seen.loops.coordinates
+    responses, eye = resolvent(_entered(within.seen, control)), np.eye(count)
     back = replace(responses, system=_first_inputs(responses.system, count), entry=responses.entry[:, :count])
     every = gain * back.at(within.frequencies.ravel()).reshape(*within.frequencies.shape, -1, count)
-    opened = tried.plants @ every
+    opened = within.strokes @ every
     left = np.linalg.inv(eye + opened)
     slow = gain * responses.at(within.lines[1:])
-    following = np.linalg.solve(eye + tried.slow @ slow[..., :count], tried.slow @ slow[..., count:])
+    following = np.linalg.solve(eye + within.slow_strokes @ slow[..., :count], within.slow_strokes @ slow[..., count:])
     steps, interval = _steps(np.einsum("whkk->whk", following)), 0.5 / float(within.lines[-1])
-    lengths = tried.seen.loops.coordinates.scale[:, None] * np.linalg.inv(tried.seen.loops.sense)
+    lengths = coordinates.scale[:, None] * np.linalg.inv(within.seen.loops.sense)
     shaken = np.sum(np.abs(left[0] @ within.disturbed) ** 2, axis=(0, 2))
     heard = np.sum(np.abs((eye - left[0]) * within.heard[:, None, :]) ** 2, axis=(0, 2))
-    spread = _spread(within)
     own = np.einsum("vfkk->vfk", left)
-    far = np.array([[_first_rise(np.abs(own[v, :, k]), within.frequencies[v]) for k in range(count)] for v in spread])
+    far = np.array([[first_rise(np.abs(own[v, :, k]), within.frequencies[v]) for k in range(count)] for v in within.spread])
     return Outcome(
         peaks=np.array([highest_gain(each)[0] for each in lengths @ left @ np.linalg.inv(lengths)]),
         rejection=np.stack([far[0], np.min(far, axis=0)]),
@@ -133,15 +105,6 @@ def _settling(steps: Array) -> Array:
     last = np.max(np.where(off > _BAND, np.arange(steps.shape[1])[:, None], -1), axis=1)
     ends = [np.take_along_axis(off, np.clip(last + by, 0, steps.shape[1] - 1)[:, None], axis=1)[:, 0] for by in (0, 1)]
     return np.where(last < 0, 0.0, last + np.clip((ends[0] - _BAND) / np.maximum(ends[0] - ends[1], 1e-300), 0.0, 1.0))
-
-
-def _first_rise(sizes: Array, frequencies: Array) -> float:
-    """Where |S| first rises through 1, straight in the logarithms."""
-    above = np.flatnonzero(sizes >= 1.0)
-    if not len(above) or not above[0]:
-        return float(frequencies[-1 if not len(above) else 0])
-    ends = slice(int(above[0]) - 1, int(above[0]) + 1)
-    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(frequencies[ends]))))
 
 
 def _delay_margin(opened: Array, frequencies: Array) -> float:

@@ -13,18 +13,21 @@ import scipy
 from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import select
-from flexstage.control.tuning.fit import BAND, STIFF, Bounds, Misfit, OneLoop, Squares, descend, keeps, sum_squares
+from flexstage.control.tuning.fit import STIFF, Bounds, OneLoop, Squares, descend, keeps, sum_squares
+from flexstage.control.tuning.laws import PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.control.tuning.search_spec import STABLE, SearchSpec
 from flexstage.control.tuning.shape import Shape
-from flexstage.control.tuning.spec import Kind
+from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.view import View, resonances
 
+STABLE = 2.5
+"""Modes may be off by so many times the spread before the loop may become unstable."""
 _INSIDE = 0.97
 """Share of the peak allowed that a loop by itself may have: frequencies between those looked at, and what loops do to one another."""
 _LOOSER, _LATER = 1.5, 8.0
@@ -137,10 +140,11 @@ class Variant:
         return self.gain * np.exp(-1j * np.minimum(2.0 * np.pi * frequencies * self.later, self.turn))
 
 
-def variants(spec: SearchSpec) -> tuple[Variant, ...]:
+def variants(spec: TuningSpec) -> tuple[Variant, ...]:
     """The plants at which a specification is judged, the model's first.
 
-    >>> [each.offset for each in variants(SearchSpec(spread=0.02))]
+    >>> from flexstage.control.tuning.laws import PI_FAMILY
+    >>> [each.offset for each in variants(TuningSpec(PI_FAMILY, spread=0.02))]
     [0.0, -0.02, 0.02, -0.05, 0.05]
     """
     limit, spread = spec.sensitivity, spec.spread
@@ -152,13 +156,13 @@ def variants(spec: SearchSpec) -> tuple[Variant, ...]:
         *(Variant(offset, 1.0, 0.0, limit) for offset in (0.0, *near)),
         *(Variant(offset, 1.0, 0.0, _LOOSER * limit) for offset in far),
         *(Variant(0.0, gain, 0.0, limit) for gain in gains),
-        *(Variant(0.0, 1.0, 1.03 * spec.delay_margin, _LATER, turn) for turn in turns),
+        *(Variant(0.0, 1.0, 1.03 * (spec.delay_margin or 0.0), _LATER, turn) for turn in turns),
     )
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """What is searched on: plants (v, f, k, k) between loops at `frequencies` (v, f), (w, h, k, k) at the even `lines` (h,) of steps.
+    """Plants (v, f, k, k) between the loops of a view at `frequencies` (v, f), and (w, h, k, k) at the even `lines` (h,) of steps.
 
     Each plant has its own frequencies, those of the model by its offset higher: its modes then stand at the same places.
 
@@ -167,7 +171,8 @@ class Field:
     that each may have; none: any. `fast` [Hz] is where loops are known to pass 1: steps are as fine, and filters as fast, as that takes.
     """
 
-    spec: SearchSpec
+    seen: View
+    spec: TuningSpec
     variants: tuple[Variant, ...]
     frequencies: Array
     plants: Array
@@ -179,30 +184,50 @@ class Field:
     allowed: tuple[float, ...] = ()
     fast: float = 0.0
 
+    @cached_property
+    def strokes(self) -> Array:
+        """Plants (v, f, k, n) from all strokes to the loops."""
+        cases = zip(self.variants, self.frequencies, strict=True)
+        return np.stack([self.seen.driven_at(each.offset, at) * each.factor(at)[:, None, None] for each, at in cases])
 
-def field(seen: View, spec: SearchSpec, floor: Mapping[str, Spectrum], places: tuple[float, ...] = (), fast: float = 0.0) -> Field:
-    """What a view, taken at the offsets of `variants`, gives a search; `floor` by input of the plant.
+    @cached_property
+    def slow_strokes(self) -> Array:
+        """The same (w, h, k, n) at the lines of steps but the first, at rest."""
+        return np.stack([self.seen.driven_at(self.variants[place].offset, self.lines[1:]) for place in self.spread])
+
+    @property
+    def spread(self) -> list[int]:
+        """Variants of which only the modes are off, and no farther than the spread; the model first."""
+        return _spread(self.spec, self.variants)
+
+
+def _spread(spec: TuningSpec, cases: tuple[Variant, ...]) -> list[int]:
+    return [place for place, each in enumerate(cases) if abs(each.offset) <= spec.spread and each.gain == 1.0 and not each.later]
+
+
+def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0) -> Field:
+    """What a view, taken at the offsets of `variants`, gives a search.
 
     Frequencies lie dense around `places` [Hz] too, those of the model: where modes are off, as much higher. `fast` is that of `Field`.
     """
-    drive, cases, sense = seen.loops.drive, variants(spec), seen.loops.sense
-    systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
+    drive, cases = seen.loops.drive, variants(spec)
     own = _frequencies(seen, max(each.offset for each in cases), places)
     frequencies = np.stack([own * (1.0 + each.offset) for each in cases])
     plants = np.stack(
-        [sense @ systems[each.offset].at(at) @ drive * each.factor(at)[:, None, None] for each, at in zip(cases, frequencies, strict=True)]
+        [seen.driven_at(each.offset, at) @ drive * each.factor(at)[:, None, None] for each, at in zip(cases, frequencies, strict=True)]
     )
     lines = _lines(seen, fast)
-    slow = np.stack([sense @ systems[offset].at(lines) @ drive for offset in ((0.0, -spec.spread, spec.spread) if spec.spread else (0.0,))])
+    slow = np.stack([seen.driven_at(cases[place].offset, lines) @ drive for place in _spread(spec, cases)])
     weights = np.sqrt(np.gradient(own))[:, None]
     return Field(
+        seen=seen,
         spec=spec,
         variants=cases,
         frequencies=frequencies,
         plants=plants,
         lines=lines,
         slow=slow,
-        disturbed=_disturbed(seen, own, floor) * weights[:, :, None],
+        disturbed=_disturbed(seen, own, spec.floor) * weights[:, :, None],
         heard=_heard(seen) * weights,
         alike=tuple(_first_alike(plants, loop) for loop in range(len(seen.loops.names))),
         fast=fast,
@@ -298,20 +323,20 @@ class Found:
         return tuple(tuple(each for each in notches if each.depth < 1.0) for notches in every)
 
 
-def search(seen: View, within: Field, kind: Kind) -> Found | None:
+def search(within: Field, family: Family) -> Found | None:
     """The best loops, those that are coupled together, then all at once; `None` where none is stable.
 
     PID begins where PI comes to. The search is the same every time: no random numbers, starts on a grid.
     """
-    found = _by_blocks(seen, within, Kind.PI, None)
-    if found is not None and kind is not Kind.PI:
-        found = _by_blocks(seen, within, kind, found)
+    found = _by_blocks(within, PI_FAMILY, None)
+    if found is not None and family == PID_FAMILY:
+        found = _by_blocks(within, family, found)
     return None if found is None else tighten(within, found)
 
 
-def advance(seen: View, within: Field, known: Decentralised) -> Found:
+def advance(within: Field, known: Decentralised) -> Found:
     """Loops brought on from a known controller, those that are coupled together, then all at once."""
-    begun = known_loops(seen, within, known)
+    begun = known_loops(within, known)
     points, reached, noises = list(begun.points), list(begun.reached), list(begun.noises)
     for block in _blocks(within):
         own = Found(tuple(begun.shapes[loop] for loop in block), tuple(begun.points[loop] for loop in block), (0.0,) * len(block))
@@ -329,20 +354,20 @@ def advance(seen: View, within: Field, known: Decentralised) -> Found:
     return tighten(within, Found(begun.shapes, tuple(points), tuple(reached), tuple(noises)))
 
 
-def known_loops(seen: View, within: Field, known: Decentralised) -> Found:
+def known_loops(within: Field, known: Decentralised) -> Found:
     """The loops of a controller as points, of those that are the same the first."""
     count = len(within.alike)
     notches = known.notches or ((),) * count
-    every = [_known_loop(seen, within, cast("PI | PID", known.laws[first]), notches[first]) for first in within.alike]
+    every = [_known_loop(within, cast("PI | PID", known.laws[first]), notches[first]) for first in within.alike]
     return Found(tuple(shape for shape, _ in every), _shared(within, tuple(point for _, point in every)), (0.0,) * count, (np.inf,) * count)
 
 
-def _known_loop(seen: View, within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tuple[Shape, Array]:
+def _known_loop(within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tuple[Shape, Array]:
     """Gains that are 0 get next to nothing: their logarithms are searched."""
     fast = 2.0 * np.pi * within.fast
     plain = PI(max(law.proportional, _LEAST * law.integral / fast), law.integral)
     corner = law.filter if isinstance(law, PID) else None
-    shape = Shape(len(notches), seen.step, corner, min(_SLOWEST_OF_FAST * fast, plain.integral / plain.proportional))
+    shape = Shape(len(notches), within.seen.step, corner, min(_SLOWEST_OF_FAST * fast, plain.integral / plain.proportional))
     if not isinstance(law, PID):
         return shape, shape.point(plain, notches)
     derivative = max(law.derivative, _FIRST_DERIVATIVE * plain.proportional**2 / plain.integral)
@@ -354,9 +379,9 @@ def tighten(within: Field, found: Found) -> Found:
     return _together(replace(within, allowed=found.noises), found)
 
 
-def _by_blocks(seen: View, within: Field, kind: Kind, begun: Found | None) -> Found | None:
+def _by_blocks(within: Field, family: Family, begun: Found | None) -> Found | None:
     """The best loops, those that are coupled together, the others open: from a grid of starts, or on from where another kind came to."""
-    shapes = tuple(_shape(seen, kind, loop, within.fast) for loop in range(len(within.alike)))
+    seen, shapes = within.seen, tuple(_shape(within.seen, family, loop, within.fast) for loop in range(len(within.alike)))
     points: list[Array] = [np.zeros(0)] * len(shapes)
     reached, noises = [0.0] * len(shapes), [np.inf] * len(shapes)
     for block in _blocks(within):
@@ -441,27 +466,21 @@ def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]
 def _calmed(within: Field, starts: list[Found], share: float) -> list[Found]:
     """Starts made quiet that still reject up to a share of what they did; first those that keep what is asked for, the farthest of them."""
     calm = [
-        _fit_together(within, each, _all_bounds(within, [share * far for far in _rejections(within, each)]), _CALM)[0] for each in starts
+        _fit_together(within, each, _all_bounds(within, [share * far for far in rejections(within, each)]), _CALM)[0] for each in starts
     ]
     return sorted(calm, key=lambda each: (not _is_calm(within, each), -_far(within, each)))
 
 
-def _rejections(within: Field, found: Found) -> list[float]:
-    """How far each loop rejects [Hz]."""
-    return [rejection(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
+def rejections(within: Field, found: Found) -> list[float]:
+    """Sensitivity crossover of each loop [Hz]."""
+    return [each.rejection for each in one_loops(within, found)]
 
 
 def _frequencies_of_aim(within: Field, found: Found) -> list[float]:
     """By loop the frequency [Hz] by which the aim is reached already: of rejection, or of which it settles in six periods."""
-    far, aim = _rejections(within, found), within.spec.objective
-    soon = [SETTLED / _settling(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
+    loops, aim = one_loops(within, found), within.spec.objective
+    far, soon = [each.rejection for each in loops], [SETTLED / each.settling for each in loops]
     return soon if aim is TuningObjective.SETTLING else list(map(min, far, soon)) if aim is TuningObjective.BALANCE else far
-
-
-def _settling(one: OneLoop, point: Array) -> float:
-    """When a step of the model stays within the band [s], one sample at least."""
-    outside = np.flatnonzero(np.abs(one.steps(point)[0] - 1.0) > BAND)
-    return one.interval * (1.0 + (float(outside[-1]) if len(outside) else 0.0))
 
 
 def _is_calm(within: Field, found: Found) -> bool:
@@ -471,17 +490,17 @@ def _is_calm(within: Field, found: Found) -> bool:
 
 def _noises(within: Field, found: Found) -> list[float]:
     """The rms at rest of each loop."""
-    return [_rms(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
+    return [each.rms for each in one_loops(within, found)]
 
 
 def _wanted(within: Field, found: Found, least: list[float]) -> list[float]:
     """Nearly what loops reject already, or part of what they should at `least` [Hz]."""
-    return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(_rejections(within, found), least, strict=True)]
+    return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(rejections(within, found), least, strict=True)]
 
 
 def _far(within: Field, found: Found) -> float:
     """How far loops reject, the geometric mean."""
-    return float(np.exp(np.mean(np.log(_rejections(within, found)))))
+    return float(np.exp(np.mean(np.log(rejections(within, found)))))
 
 
 def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
@@ -583,10 +602,10 @@ class Joint:
         return {loop: slice(int(ends[place]), int(ends[place + 1])) for place, loop in enumerate(different)}
 
     @cached_property
-    def misfits(self) -> Mapping[int, Misfit]:
-        """Of each different loop, its noise relative to that at the start."""
-        begun = {loop: _beside(self.within, self.found, loop) for loop in self.parts}
-        return {loop: Misfit(one, self.bounds[loop], self.quiet / _rms(one, self.found.points[loop])) for loop, one in begun.items()}
+    def loops(self) -> Mapping[int, tuple[OneLoop, float]]:
+        """Each different loop with the weight of its noise, relative to that at the start."""
+        begun = one_loops(self.within, self.found)
+        return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 
     def moved(self, point: Array) -> Found:
         """The loops of a point."""
@@ -602,11 +621,12 @@ class Joint:
         slow_values, slow_slopes = self._responses(found, within.lines[None, 1:])
         slow = closed_by(within.slow[:, 1:], slow_values)
         terms = [_coupled(within, whole, slopes)]
-        for loop, misfit in self.misfits.items():
+        for loop, (one, quiet) in self.loops.items():
             following = np.pad(1.0 - slow[..., loop, loop], ((0, 0), (1, 0)), constant_values=1.0)
-            count = misfit.bounds.plants
+            bounds, count = self.bounds[loop], self.bounds[loop].plants
             own = _by_all(whole[:count], {first: each[:, :count] for first, each in slopes.items()}, loop, within.alike)
-            terms += misfit.rest(whole[:count, :, loop, loop], own, following, partial(_by_all, slow, slow_slopes, loop, within.alike))
+            late = partial(_by_all, slow, slow_slopes, loop, within.alike)
+            terms += one.misfits(bounds, quiet, (whole[:count, :, loop, loop], own), (following, late))
         return sum_squares(terms, len(point))
 
     def _responses(self, found: Found, frequencies: Array) -> tuple[Array, Mapping[int, Array]]:
@@ -619,12 +639,11 @@ class Joint:
         within = self.within
         if not _is_stable(coupled_sensitivities(within.plants, found, within.frequencies)):
             return np.inf
-        own = [Misfit(_beside(within, found, loop), self.bounds[loop], 0.0).passed(found.points[loop]) for loop in self.parts]
-        return max(*own, coupled_peak(within, found) / within.spec.sensitivity / _INSIDE - 1.0)
-
-
-def _rms(one: OneLoop, point: Array) -> float:
-    return max(float(np.sqrt(one.noise(point))), 1e-300)
+        loops = one_loops(within, found)
+        return max(
+            *(loops[loop].excess(self.bounds[loop]) for loop in self.parts),
+            coupled_peak(within, found) / within.spec.sensitivity / _INSIDE - 1.0,
+        )
 
 
 def _by_all(whole: Array, slopes: Mapping[int, Array], loop: int, alike: tuple[int, ...]) -> Array:
@@ -647,8 +666,27 @@ def _is_stable(whole: Array) -> bool:
     return bool(np.all(np.abs(turned[:, -1] - turned[:, 0] + begun) < 3.0))
 
 
-def _beside(within: Field, found: Found, loop: int) -> OneLoop:
-    return _one_loop(within, found.shapes[loop], loop, _Left.beside(within, found, loop), 1.0)
+def one_loops(within: Field, found: Found) -> list[OneLoop]:
+    """Each loop with the others closed: C g = 1/S_ii - 1, and S_ij/S_ii of what disturbs loop j, none of which depends on C."""
+    whole = coupled_sensitivities(within.plants, found, within.frequencies)
+    slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
+    responses, slow_responses = found.responses(within.frequencies), found.responses(within.lines[1:])
+    loops = []
+    for loop, (shape, point) in enumerate(zip(found.shapes, found.points, strict=True)):
+        own = whole[..., loop, loop]
+        shaken = np.einsum("fj,fjd->fd", whole[0, :, loop] / own[0, :, None], within.disturbed)
+        one = OneLoop(
+            shape=shape,
+            point=point,
+            frequencies=within.frequencies,
+            plants=(1.0 / own - 1.0) / responses[..., loop],
+            lines=within.lines,
+            slow=(1.0 / slow[..., loop, loop] - 1.0) / slow_responses[:, loop],
+            disturbed=np.sum(np.abs(shaken) ** 2, axis=-1),
+            heard=np.abs(within.heard[:, loop]) ** 2,
+        )
+        loops.append(one)
+    return loops
 
 
 def _coupled(within: Field, whole: Array, slopes: Mapping[int, Array]) -> tuple[Array, Array]:
@@ -678,41 +716,9 @@ def _largest_gains(given: Array) -> tuple[Array, Array]:
     return np.sqrt(value), v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
-@dataclass(frozen=True, eq=False)
-class _Left:
-    """What the other loops leave to one: its `plants` (v, f), `slow` (w, h), and `shares` (f, k) of what disturbs each of them."""
-
-    plants: Array
-    slow: Array
-    shares: Array
-
-    @staticmethod
-    def beside(within: Field, found: Found, loop: int) -> _Left:
-        """The others closed: C g = 1/S_ii - 1, and S_ij/S_ii of what disturbs loop j, none of which depends on C."""
-        whole = coupled_sensitivities(within.plants, found, within.frequencies)
-        slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])[..., loop, loop]
-        own, response = whole[..., loop, loop], found.responses(within.frequencies)[..., loop]
-        left = (1.0 / slow - 1.0) / found.responses(within.lines[1:])[:, loop]
-        return _Left((1.0 / own - 1.0) / response, np.pad(left, ((0, 0), (1, 0))), whole[0, :, loop] / own[0, :, None])
-
-
-def _one_loop(within: Field, shape: Shape, loop: int, left: _Left, share: float) -> OneLoop:
-    shaken = np.einsum("fj,fjd->fd", np.broadcast_to(left.shares, within.disturbed.shape[:2]), within.disturbed)
-    return OneLoop(
-        shape=shape,
-        frequencies=within.frequencies,
-        plants=left.plants,
-        limits=np.array([each.limit for each in within.variants]) * share,
-        lines=within.lines,
-        slow=left.slow,
-        disturbed=np.sum(np.abs(shaken) ** 2, axis=-1),
-        heard=np.abs(within.heard[:, loop]) ** 2,
-    )
-
-
-def _shape(seen: View, kind: Kind, loop: int, fast: float) -> Shape:
+def _shape(seen: View, family: Family, loop: int, fast: float) -> Shape:
     corner = None
-    if kind is Kind.PID:
+    if family == PID_FAMILY:
         corner = _CORNER * max(last_mode(seen), fast)
         corner = corner if seen.step is None else min(corner, _OF_RATE / seen.step)
     slowest = max(_SLOWEST * _first_place(seen, loop), _SLOWEST_OF_FAST * fast)
@@ -761,17 +767,7 @@ def _louder(point: Array, factor: float) -> Array:
     return point + factor * (np.arange(len(point)) == 0)
 
 
-def rejection(one: OneLoop, point: Array) -> float:
-    """The frequency [Hz] where |S| of the model first rises through 1, straight in the logarithms."""
-    sizes = np.abs(one.sensitivities(point)[0])
-    above = np.flatnonzero(sizes >= 1.0)
-    if not len(above) or not above[0]:
-        return float(one.frequencies[0, -1 if not len(above) else 0])
-    ends = slice(int(above[0]) - 1, int(above[0]) + 1)
-    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(one.frequencies[0, ends]))))
-
-
-def _bounds(spec: SearchSpec, frequency: float) -> Bounds:
+def _bounds(spec: TuningSpec, frequency: float) -> Bounds:
     """What a loop shall keep that is as good as a frequency says, in what the aim is about, and what is asked for."""
     far = frequency if spec.objective in (TuningObjective.BALANCE, TuningObjective.REJECTION) else 0.0
     soon = SETTLED / frequency if spec.objective in (TuningObjective.BALANCE, TuningObjective.SETTLING) and frequency else np.inf
@@ -814,11 +810,6 @@ def coupled_peak(within: Field, found: Found) -> float:
     return float(np.max(np.linalg.norm(whole, 2, axis=(-2, -1)) / limits[:, None]) * within.spec.sensitivity)
 
 
-def rejects_to(within: Field, found: Found, loop: int) -> float:
-    """The frequency [Hz] up to which a loop rejects, the others closed."""
-    return rejection(_beside(within, found, loop), found.points[loop])
-
-
 def excess(within: Field, found: Found) -> float:
-    """By how much at worst, relative, what was asked for is passed."""
+    """Largest relative excess over the requirements."""
     return Joint(within, found, tuple(_all_bounds(within, [0.0] * len(within.alike))), 0.0).passed(found)

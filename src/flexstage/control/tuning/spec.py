@@ -2,48 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import Enum
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Table
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.family import Family
-from flexstage.control.controllers.lqg import LQG
+from flexstage.control.controllers.lqg import LQG, Disturbances
 from flexstage.control.controllers.notch import Notch
+from flexstage.control.tuning.objective import SENSITIVITY, TuningObjective
 
 
-class Kind(Enum):
-    """Kinds of controllers that can be tuned."""
-
-    PI = "PI"
-    PID = "PID"
-    RESONANT = "integral resonant control"
-    LQG = "LQG"
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TuningSpec(CheckedFields):
-    """Specification of a tuning: `bandwidth` [Hz], where every loop's gain first passes 1; absent: the highest that the rest allows.
+    """Tuning specification: the `family` of the controller, the requirements, and the disturbances and references that it serves.
+
+    Without an `objective` every loop's gain first passes 1 at `bandwidth` [Hz] (absent: the highest that the rest allows), with `notches`
+    in every loop, and more of them on modes if `automatic`. With one the controller is optimised for it: `rejection` [Hz] and `settling`
+    [s] (to 2 %) are required of every loop, absent: as good as possible; `overshoot` is the most of a step, `delay_margin` [s] the least of
+    every loop; references are shaped by a `prefilter`.
 
     `sensitivity` is the highest peak of S allowed (poses as lengths): 2 = 6 dB leaves gain margins of 2 and phase margins of 29 deg
     (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). `spread` is how much all modes may lie above or below the
-    model's, relative: stability and peak hold there too.
+    model's, relative: stability and peak hold there too; `gain` the same of all gains, with an objective only.
+
+    `expected` are the disturbances that an observer expects, `floor` spectra by input, `feedforward` (n, f) the strokes by which the
+    reference is fed forward.
     """
 
+    family: Family
     bandwidth: float | None = None
-    sensitivity: float = 2.0
+    sensitivity: float = SENSITIVITY
     spread: float = 0.02
+    objective: TuningObjective | None = None
+    rejection: float | None = None
+    settling: float | None = None
+    overshoot: float = 0.2
+    delay_margin: float | None = None
+    gain: float = 0.0
+    prefilter: bool = False
+    notches: tuple[Notch, ...] = ()
+    automatic: bool = True
+    expected: Disturbances | None = None
+    floor: Mapping[str, Spectrum] = field(default_factory=lambda: Table({}))
+    feedforward: Array | None = None
 
 
 def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
     """List the errors of a specification for a loop sampled every `step` [s].
 
-    >>> [str(each) for each in spec_findings(TuningSpec(6000.0), 1e-4)]
+    >>> from flexstage.control.tuning.laws import PI_FAMILY
+    >>> [str(each) for each in spec_findings(TuningSpec(PI_FAMILY, 6000.0), 1e-4)]
     ['bandwidth: 6000 Hz is not below half the sampling rate, 5000 Hz. Sample above 60000 Hz, or ask for less.']
+    >>> [each.advice for each in spec_findings(TuningSpec(PI_FAMILY, rejection=500.0, delay_margin=1e-3), 1e-4)]
+    ['Ask for less than 159.2 Hz, or 0.3183 ms']
     """
     if spec.bandwidth is not None and not 0.0 < spec.bandwidth < np.inf:
         yield Finding("bandwidth", f"it is {spec.bandwidth:g} Hz", "Give a positive frequency")
@@ -55,13 +72,25 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
         yield Finding("sensitivity", f"the highest peak of S allowed is {spec.sensitivity:g}, and it has to be above 1", advice)
     if not 0.0 <= spec.spread < 0.5:
         yield Finding("spread", f"modes are to be off by up to {spec.spread:g}", "Give a ratio from 0 to 0.5, for example 0.02")
+    delay = spec.delay_margin or 0.0
+    if spec.rejection is not None and step is not None and spec.rejection >= 0.5 / step:
+        what = f"{spec.rejection:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
+        yield Finding("controller.goal.rejection", what, "Ask for less, or sample faster")
+    elif spec.rejection is not None and 2.0 * np.pi * spec.rejection * delay > 1.0:
+        turn = f"a delay of {1e3 * delay:g} ms turns by {360.0 * spec.rejection * delay:.0f} deg"
+        what = f"up to {spec.rejection:g} Hz {turn}: no loop that rejects so far bears it"
+        least, most = 0.5 / (np.pi * delay), 0.5e3 / (np.pi * spec.rejection)
+        yield Finding("controller.goal", what, f"Ask for less than {least:.4g} Hz, or {most:.4g} ms")
+    if spec.settling is not None and delay > 0.5 * spec.settling:
+        what = f"steps are to settle in {1e3 * spec.settling:g} ms, and a delay of {1e3 * delay:g} ms is to be borne"
+        yield Finding("controller.goal", what, "Ask for one of them: a loop bears a fraction of what it settles in")
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """A loop as it came out: `bandwidths` [Hz] by loop, the `peak` of S and where [Hz], `growth` [1/s] of its slowest free motion.
+    """Verdict on a loop: `bandwidths` [Hz] by loop, the `peak` of S and its `frequency` [Hz], `growth` [1/s] of the slowest free motion.
 
-    All are the worst over the modes' spread, the bandwidths those of the model itself. `offset` tells where the peak or, in an unstable
+    All are the worst over the modes' spread, the bandwidths those of the model itself. `offset` is where the peak or, in an unstable
     loop, the growth was found: modes by this much above the model's.
     """
 
@@ -84,13 +113,11 @@ class Judgement:
 
 @dataclass(frozen=True, eq=False)
 class Tuning:
-    """A tuned controller: its `kind`, the `spec`, its `judgement`, and the `notches` of each loop; `reason` is the sentence."""
+    """A tuned controller: the `spec` and its `judgement`; `reason` is the sentence."""
 
-    kind: Kind | Family
     spec: TuningSpec
     controller: Decentralised | LQG
     judgement: Judgement
-    notches: tuple[tuple[Notch, ...], ...]
     reason: str
 
     @property

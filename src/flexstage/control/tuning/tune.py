@@ -1,31 +1,25 @@
-"""Tuning: gains for a wanted bandwidth or the highest there is, and the reason where it cannot be reached."""
+"""Tuning: gains for a required bandwidth, or for the highest bandwidth, and the reason where it cannot be reached."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-from types import MappingProxyType
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
-from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.notch import notch_findings
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.tuning.attempt import Attempt, Task, attempt, reach
-from flexstage.control.tuning.spec import Judgement, Kind, Tuning, spec_findings
+from flexstage.control.tuning.attempt import Attempt, BandwidthTrial
+from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
+from flexstage.control.tuning.spec import Judgement, Tuning, TuningSpec, spec_findings
 from flexstage.control.tuning.view import View, view
 
 _SLOW = 0.1
 """Lowest bandwidth that is tried, over that of integral control alone with a gain of 1 at the highest resonance: stable by small gain."""
 _FINE = 0.05
-_STEPS = (1.3, 2.0)
-_STEPS_OF: Mapping[Kind | Family, tuple[float, float]] = MappingProxyType({Kind.PID: (1.14, 2.0), Kind.LQG: (1.6, 4.0)})
-"""Ratios of bandwidths tried in turn, above 0.05 of the first mode and below, where less depends on them.
-
-A loop with lead may pass 1 between modes, in ranges that are narrow; LQG takes longer.
-"""
+"""Share of the first mode above which bandwidths are tried in finer steps."""
 _WITHIN = 1.003
 """Within which the highest bandwidth is found."""
 _NOTICED = 20.0
@@ -34,43 +28,47 @@ _CALM = (0.9, 0.8, 0.7, 0.6)
 """Shares of the peak allowed that single loops may have while integrators get stronger: loops do something to one another."""
 
 
-def tune(plant: Plant, loops: Loops, task: Task) -> Tuning:
-    """Tune a controller to a specification, judged on the whole sampled loop.
+def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
+    """Tune a controller to a specification without objective, judged on the whole sampled loop.
 
-    At the wanted bandwidth (absent: the highest found, by trial from fast to slow and then by halving) every loop's gain is 1; of the
-    kind's laws the one with the lowest peak of S is taken, first without notches of its own, then with them. The loop as a whole has to
-    be stable by its eigenvalues and its peak of S below that of `spec`, also with all modes off by its spread. Once the bandwidth
-    stands, PI and PID take the strongest integrators that the same peak of S leaves room for (Astrom, Panagopoulos & Hagglund, Automatica
+    At the required bandwidth (absent: the highest found, by trial from fast to slow and then by halving) every loop's gain is 1; of the
+    family's laws the one with the lowest peak of S is taken, first without notches of its own, then with them. The loop as a whole has to
+    be stable by its eigenvalues and its peak of S below that of `spec`, also with all modes off by its spread. At this bandwidth PI and
+    PID take the strongest integrators that the same peak of S leaves room for (Astrom, Panagopoulos & Hagglund, Automatica
     34 (1998) 585). LQG is tuned by its weights, in platform coordinates. Raises `DesignError` where the bandwidth is not reached: with
-    what stands in the way, the highest that is, and what would help.
+    the reason, the highest that is, and a remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.spec import TuningSpec
     >>> plant = integral_loop().plant
-    >>> found = tune(plant, platform_loops(plant.coordinates), Task(Kind.PI, TuningSpec(bandwidth=5.0)))
+    >>> found = tune(plant, platform_loops(plant.coordinates), TuningSpec(PI_FAMILY, bandwidth=5.0))
     >>> print(found.reason)
     PI: all gains pass 1 at 5 Hz; the peak of S with modes up to 2 % off is 0.5 dB, 6.02 dB allowed
     """
-    loops = platform_loops(loops.coordinates) if task.kind is Kind.LQG else loops
-    require(_findings(plant, task))
-    seen = view(plant, loops, task.spec.spread)
-    wanted = task.spec.bandwidth
-    top, best = highest_bandwidth(seen, task) if wanted is None else (wanted, attempt(seen, task, wanted))
-    if best is None or not best.reaches(top, task.spec):
-        raise DesignError([_no_bandwidth(seen, task) if wanted is None else _unreached(seen, task, best, wanted)])
-    best = _stiffest(seen, task, top, best)
-    return Tuning(task.kind, task.spec, best.controller, best.judgement, best.notches, _sentence(task, best, top))
+    loops = platform_loops(loops.coordinates) if spec.family == LQG_FAMILY else loops
+    require(_findings(plant, spec))
+    seen = view(plant, loops, spec.spread)
+    trial, best = highest_bandwidth(seen, spec) if spec.bandwidth is None else _at(seen, spec, spec.bandwidth)
+    if trial is None or best is None or not best.reaches(trial.frequency, spec):
+        raise DesignError([_no_bandwidth(seen, spec) if spec.bandwidth is None else _unreached(seen, spec, best, spec.bandwidth)])
+    best = _stiffest(trial, best)
+    return Tuning(spec, best.controller, best.judgement, _sentence(spec, best, trial.frequency))
 
 
-def _stiffest(seen: View, task: Task, bandwidth: float, found: Attempt) -> Attempt:
+def _at(seen: View, spec: TuningSpec, frequency: float) -> tuple[BandwidthTrial, Attempt | None]:
+    trial = BandwidthTrial(seen, spec, frequency)
+    return trial, trial.best()
+
+
+def _stiffest(trial: BandwidthTrial, found: Attempt) -> Attempt:
     """At the same bandwidth, within the same peak of S, more gain at rest: the lowest peak alone leaves motions that creep.
 
     Part of the peak allowed is left to what the loops do to one another.
     """
-    if task.kind not in (Kind.PI, Kind.PID):
+    if trial.spec.family not in (PI_FAMILY, PID_FAMILY):
         return found
-    tried = [reach(seen, task, bandwidth, share * task.spec.sensitivity) for share in _CALM]
+    tried = [trial.reach(share * trial.spec.sensitivity) for share in _CALM]
     return max([found, *(each for each in tried if each is not None)], key=_weakest)
 
 
@@ -79,27 +77,27 @@ def _weakest(found: Attempt) -> float:
     return float(np.min(np.abs(np.diag(found.gains[0, 0]))))
 
 
-def trial_bandwidths(seen: View, kind: Kind | Family) -> list[float]:
+def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
     """Bandwidths [Hz] that are tried in turn, descending: from what hold and delay allow to what roll-off and resonances allow any loop.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> places = trial_bandwidths(view(plant, platform_loops(plant.coordinates), 0.02), Kind.PI)
+    >>> places = trial_bandwidths(view(plant, platform_loops(plant.coordinates), 0.02), PI_FAMILY.steps)
     >>> round(places[0]), len(places)
     (3000, 24)
     """
     calmest = _SLOW * float(np.min(seen.frequencies[:, None] / np.max(np.abs(seen.own), axis=0)))
     slowest = min(max(calmest, float(seen.frequencies[0])), 0.5 * seen.fastest)
-    finer, coarser = _STEPS_OF.get(kind, _STEPS)
+    finer, coarser = steps
     places = [seen.fastest]
     while places[-1] > slowest:
         places.append(places[-1] / (finer if places[-1] > _FINE * seen.modes[0] else coarser))
     return places
 
 
-def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
-    """The highest bandwidth [Hz] found at which the specified margins are kept, within 0.3 %, and the controller; 0 and None: none is.
+def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
+    """The trial at the highest bandwidth found at which the specified margins are kept, within 0.3 %, and the controller; or None.
 
     It is the highest of `trial_bandwidths`, halved up to the next: no proof that no other controller reaches more.
 
@@ -108,71 +106,70 @@ def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
     >>> from flexstage.control.tuning.spec import TuningSpec
     >>> plant = integral_loop().plant
     >>> seen = view(plant, platform_loops(plant.coordinates), 0.02)
-    >>> round(highest_bandwidth(seen, Task(Kind.PI, TuningSpec(), automatic=False))[0])
+    >>> round(highest_bandwidth(seen, TuningSpec(PI_FAMILY, automatic=False))[0].frequency)
     56
     """
-    places = trial_bandwidths(seen, task.kind)
+    places = trial_bandwidths(seen, spec.family.steps)
     for number, place in enumerate(places):
-        found = reach(seen, task, place)
+        trial = BandwidthTrial(seen, spec, place)
+        found = trial.reach()
         if found is not None:
-            return _bisect(seen, task, (place, found), places[number - 1] if number else place)
-    return 0.0, None
+            return _bisect(trial, found, places[number - 1] if number else place)
+    return None, None
 
 
-def _bisect(seen: View, task: Task, low: tuple[float, Attempt], high: float) -> tuple[float, Attempt]:
-    while high > _WITHIN * low[0]:
-        middle = float(np.sqrt(low[0] * high))
-        found = reach(seen, task, middle)
+def _bisect(low: BandwidthTrial, best: Attempt, high: float) -> tuple[BandwidthTrial, Attempt]:
+    while high > _WITHIN * low.frequency:
+        middle = replace(low, frequency=float(np.sqrt(low.frequency * high)))
+        found = middle.reach()
         if found is not None:
-            low = (middle, found)
+            low, best = middle, found
         else:
-            high = middle
-    return low
+            high = middle.frequency
+    return low, best
 
 
-def _findings(plant: Plant, task: Task) -> Iterator[Finding]:
-    yield from spec_findings(task.spec, plant.hardware.step)
-    if task.kind is not Kind.LQG:
-        yield from notch_findings(task.notches, plant.frequencies)
-    elif task.notches:
-        yield Finding("notches", f"{len(task.notches)} are given for LQG, whose observer knows the modes", "Leave them out")
-    if task.kind is Kind.LQG and task.expected is None:
+def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
+    yield from spec_findings(spec, plant.hardware.step)
+    if spec.family != LQG_FAMILY:
+        yield from notch_findings(spec.notches, plant.frequencies)
+    elif spec.notches:
+        yield Finding("notches", f"{len(spec.notches)} are given for LQG, whose observer knows the modes", "Leave them out")
+    if spec.family == LQG_FAMILY and spec.expected is None:
         yield Finding("LQG", "the noise its observer shall expect is not stated", "State the gauges' noise and what disturbs the strokes")
 
 
-def _no_bandwidth(seen: View, task: Task) -> Finding:
-    places = trial_bandwidths(seen, task.kind)
-    best, advice = attempt(seen, task, places[-1]), _help(seen, task, places[-1])
-    what = f"no bandwidth is reached, {_tried(places)}; at the last {_reason(task, best, places[-1])}"
+def _no_bandwidth(seen: View, spec: TuningSpec) -> Finding:
+    places = trial_bandwidths(seen, spec.family.steps)
+    best, advice = BandwidthTrial(seen, spec, places[-1]).best(), _help(seen, spec, places[-1])
+    what = f"no bandwidth is reached, {_tried(places)}; at the last {_reason(spec, best, places[-1])}"
     return Finding("tuning", what, f"{advice[:1].upper()}{advice[1:]}")
 
 
-def _unreached(seen: View, task: Task, best: Attempt | None, wanted: float) -> Finding:
-    top, reached = highest_bandwidth(seen, task)
-    tried = _tried(trial_bandwidths(seen, task.kind))
-    rest = (
-        f"{_three_digits(top)} Hz is the highest found with {_controller_name(task, reached)}, {tried}"
-        if reached
-        else f"no other is reached either, {tried}"
-    )
-    what = f"at {_three_digits(wanted)} Hz {_reason(task, best, wanted)}; {rest}"
-    more = f"Ask for more, up to {_three_digits(top)} Hz" if wanted < top else f"Ask for {_three_digits(top)} Hz or less"
-    ask = more if reached else "Allow a higher peak of S"
-    return Finding("bandwidth", what, f"{ask}; {_help(seen, task, wanted)}")
+def _unreached(seen: View, spec: TuningSpec, best: Attempt | None, wanted: float) -> Finding:
+    trial, reached = highest_bandwidth(seen, spec)
+    tried = _tried(trial_bandwidths(seen, spec.family.steps))
+    rest, ask = f"no other is reached either, {tried}", "Allow a higher peak of S"
+    if trial is not None and reached is not None:
+        top = _three_digits(trial.frequency)
+        rest = f"{top} Hz is the highest found with {_controller_name(spec, reached)}, {tried}"
+        ask = f"Ask for more, up to {top} Hz" if wanted < trial.frequency else f"Ask for {top} Hz or less"
+    what = f"at {_three_digits(wanted)} Hz {_reason(spec, best, wanted)}; {rest}"
+    return Finding("bandwidth", what, f"{ask}; {_help(seen, spec, wanted)}")
 
 
 def _tried(places: list[float]) -> str:
     return f"{len(places)} bandwidths tried from {_three_digits(places[0])} to {_three_digits(places[-1])} Hz"
 
 
-def _reason(task: Task, best: Attempt | None, wanted: float) -> str:
+def _reason(spec: TuningSpec, best: Attempt | None, wanted: float) -> str:
     """What stands in the way of a bandwidth."""
     if best is None:
-        return f"{task.kind.value} has no law whose gain is 1 there"
-    found, called = best.judgement, _controller_name(task, best)
+        return f"{spec.family.name} has no law whose gain is 1 there"
+    found, called = best.judgement, _controller_name(spec, best)
     if not found.stable:
         return f"the loop with {called} is unstable: it grows by {found.growth:.3g} 1/s{_offset_text(found)}"
-    allowed = task.spec.sensitivity
+    allowed = spec.sensitivity
     if found.peak > allowed:
         above = _decibel(found.peak / allowed)
         peak = f"{_decibel(found.peak):.1f} dB at {_three_digits(found.frequency)} Hz{_offset_text(found)}"
@@ -181,31 +178,29 @@ def _reason(task: Task, best: Attempt | None, wanted: float) -> str:
     return f"the gain of a loop with {called} first passes 1 at {_three_digits(far)} Hz already"
 
 
-def _help(seen: View, task: Task, wanted: float) -> str:
-    """What would help: notches, another kind, faster samples; with what it gives where that is computed."""
+def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
+    """Remedies: notches, another kind, faster samples; with the bandwidth that they give where it is computed."""
     found = []
-    if not task.automatic and task.kind is not Kind.LQG:
-        top, best = highest_bandwidth(seen, replace(task, automatic=True))
-        if best is not None and any(best.notches):
-            found.append(f"with {_notch_places(best)} {_three_digits(top)} Hz is reached")
+    if not spec.automatic and spec.family != LQG_FAMILY:
+        trial, best = highest_bandwidth(seen, replace(spec, automatic=True))
+        if trial is not None and best is not None and any(best.notches):
+            found.append(f"with {_notch_places(best)} {_three_digits(trial.frequency)} Hz is reached")
     if seen.step is not None:
-        acts = max(wanted, float(seen.modes[0])) if isinstance(task.kind, Family) and not task.kind.notched else wanted
+        acts = wanted if spec.family.notched else max(wanted, float(seen.modes[0]))
         lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)
         if lag > _NOTICED:
             found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(acts)} Hz")
-    others = {Kind.PI: "PID or LQG", Kind.PID: "LQG", Kind.RESONANT: "PI with notches, or LQG", Kind.LQG: "less noise of the gauges"}
-    other = task.kind.others if isinstance(task.kind, Family) else others[task.kind]
-    return "; ".join([*found, f"try {other}, more damping, or a smaller spread of the modes"])
+    return "; ".join([*found, f"try {spec.family.others}, more damping, or a smaller spread of the modes"])
 
 
-def _sentence(task: Task, best: Attempt, bandwidth: float) -> str:
-    spread = f" with modes up to {100.0 * task.spec.spread:g} % off" if task.spec.spread else ""
-    peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB, {_decibel(task.spec.sensitivity):.3g} dB allowed"
-    return f"{_controller_name(task, best)}: all gains pass 1 at {_three_digits(bandwidth)} Hz; {peak}"
+def _sentence(spec: TuningSpec, best: Attempt, bandwidth: float) -> str:
+    spread = f" with modes up to {100.0 * spec.spread:g} % off" if spec.spread else ""
+    peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB, {_decibel(spec.sensitivity):.3g} dB allowed"
+    return f"{_controller_name(spec, best)}: all gains pass 1 at {_three_digits(bandwidth)} Hz; {peak}"
 
 
-def _controller_name(task: Task, best: Attempt) -> str:
-    return f"{task.kind.value} and {_notch_places(best)}" if any(best.notches) else task.kind.value
+def _controller_name(spec: TuningSpec, best: Attempt) -> str:
+    return f"{spec.family.name} and {_notch_places(best)}" if any(best.notches) else spec.family.name
 
 
 def _notch_places(best: Attempt) -> str:

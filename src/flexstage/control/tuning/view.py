@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
 _PLAIN, _PER_DECADE = 400, 60
@@ -69,6 +69,14 @@ class View:
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
     @cached_property
+    def _resolvents(self) -> dict[float, Resolvent]:
+        return {offset: resolvent(system) for offset, system in zip(self.offsets, self.systems, strict=True)}
+
+    def driven_at(self, offset: float, frequencies: Array) -> Array:
+        """Responses (f, k, n) of the loops' poses to strokes at frequencies [Hz], with the modes by one of the offsets off."""
+        return self.loops.sense @ self._resolvents[offset].at(frequencies)
+
+    @cached_property
     def driven(self) -> Array:
         """Responses (v, f, k, k) of the loops' poses to the loops' commands."""
         return self.responses @ self.loops.drive
@@ -77,11 +85,6 @@ class View:
     def own(self) -> Array:
         """The loops' own responses (v, f, k)."""
         return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
-
-    @cached_property
-    def tried(self) -> dict[Any, Any]:
-        """What a search has tried at its present frequency, kept by it: the same laws come again with other sets of notches beside them."""
-        return {}
 
     @cached_property
     def kept(self) -> dict[Any, Any]:

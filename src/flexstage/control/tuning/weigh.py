@@ -14,9 +14,9 @@ from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observ
 from flexstage.control.tuning.attempt import driven_gains
 from flexstage.control.tuning.judge import closed_growth
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.control.tuning.outcome import Bench, Outcome, outcome
-from flexstage.control.tuning.search import SETTLED, last_mode
-from flexstage.control.tuning.search_spec import SearchSpec
+from flexstage.control.tuning.outcome import Outcome, outcome
+from flexstage.control.tuning.search import SETTLED, Field, last_mode
+from flexstage.control.tuning.spec import TuningSpec
 
 _BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
 """Grid of starts: bandwidths as shares of the first mode; how many times the expected noise strokes have; weights of the pose."""
@@ -46,22 +46,22 @@ class Regulated:
     Loops that are the same have the same numbers.
     """
 
-    tried: Bench
+    within: Field
     expected: Disturbances
     feedforward: Array | None
 
     @property
     def firsts(self) -> tuple[int, ...]:
         """The loops that are different."""
-        return tuple(sorted(set(self.tried.field.alike)))
+        return tuple(sorted(set(self.within.alike)))
 
     def controller(self, point: Array) -> LQG:
         """The design of a point."""
-        count, alike = len(self.firsts), self.tried.field.alike
+        count, alike = len(self.firsts), self.within.alike
         places = [self.firsts.index(first) for first in alike]
         numbers = np.exp(point)
         weights = Weights(tuple(numbers[:count][places].tolist()), tuple(numbers[count + 1 :][places].tolist()))
-        model, coordinates = self.tried.seen.systems[0], self.tried.seen.loops.coordinates
+        model, coordinates = self.within.seen.systems[0], self.within.seen.loops.coordinates
         observer = observer_gain(model, coordinates, Disturbances(float(numbers[count]), self.expected.gauges))
         return with_observer(model, coordinates, weights, observer, self.feedforward)
 
@@ -70,14 +70,14 @@ class Regulated:
 
         For the model itself every design is stable: regulator and observer are, each by itself.
         """
-        seen = self.tried.seen
+        seen = self.within.seen
         ends = {min(seen.offsets), max(seen.offsets)}
         try:
             system = self.controller(point).system(seen.step)
         except DesignError:
             return None
         growths = [closed_growth(each, system) for offset, each in zip(seen.offsets, seen.systems, strict=True) if offset in ends]
-        return None if max(growths) >= 0.0 else outcome(self.tried, system)
+        return None if max(growths) >= 0.0 else outcome(self.within, system)
 
 
 def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
@@ -91,7 +91,7 @@ def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -
     def cost(point: Array) -> float:
         return _cost(searched, against, point)
 
-    seen = searched.tried.seen
+    seen = searched.within.seen
     first = float(seen.modes[0])
     known = list(_grid_around(searched, begun, bandwidth))
     if bandwidth > last_mode(seen):
@@ -111,7 +111,7 @@ def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -
 
 def _grid_around(searched: Regulated, begun: LQG, bandwidth: float) -> Iterator[Array]:
     """The weights of a known controller with next to none of the pose, then those of slower ones, all on the scale of the roll-off."""
-    seen, firsts = searched.tried.seen, list(searched.firsts)
+    seen, firsts = searched.within.seen, list(searched.firsts)
     weights, expected = begun.weights or Weights(bandwidth), begun.expected or searched.expected
     stated = np.broadcast_to(weights.bandwidth, (len(seen.loops.names),))[firsts]
     poses, driven = np.array(_POSES), driven_gains(seen, bandwidth)[firsts]
@@ -137,12 +137,12 @@ def _cost(searched: Regulated, against: Outcome, point: Array) -> float:
     found = searched.outcome(point)
     if found is None:
         return _UNSTABLE
-    better = np.concatenate(list(_improvements(searched.tried.field.spec, found, against)))
+    better = np.concatenate(list(_improvements(searched.within.spec, found, against)))
     least = -float(np.log(np.mean(np.exp(-_SHARPNESS * better)))) / _SHARPNESS
-    return _STEEP * excess_of(searched.tried, found) - least
+    return _STEEP * excess_of(searched.within, found) - least
 
 
-def _improvements(spec: SearchSpec, found: Outcome, against: Outcome) -> Iterator[Array]:
+def _improvements(spec: TuningSpec, found: Outcome, against: Outcome) -> Iterator[Array]:
     """Logarithms by loop, of what the aim is about."""
     if spec.objective in (TuningObjective.BALANCE, TuningObjective.REJECTION):
         yield np.log(found.rejection[0] / against.rejection[0])
@@ -153,7 +153,7 @@ def _improvements(spec: SearchSpec, found: Outcome, against: Outcome) -> Iterato
         yield np.log(np.maximum(against.settling, 1e-300) / np.maximum(found.settling, 1e-300))
 
 
-def merit(spec: SearchSpec, found: Outcome) -> float:
+def merit(spec: TuningSpec, found: Outcome) -> float:
     """The mean logarithm by loop of what the aim is about.
 
     A balance is about the frequency up to which a loop rejects, or that of which it settles in six periods, the lower of them.
@@ -168,24 +168,24 @@ def merit(spec: SearchSpec, found: Outcome) -> float:
     return float(np.mean(np.log(merits[spec.objective])))
 
 
-def worth(tried: Bench, found: Outcome) -> float:
+def worth(within: Field, found: Outcome) -> float:
     """The merit less what exceeds the bounds of the specification; peaks count where modes are within its spread."""
-    spec = tried.field.spec
-    limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in tried.field.variants])
+    spec = within.spec
+    limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in within.variants])
     return merit(spec, found) - _STEEP * _excess(spec, found, limits)
 
 
-def excess_of(tried: Bench, found: Outcome) -> float:
+def excess_of(within: Field, found: Outcome) -> float:
     """By how much bounds are passed, the sum of what each is; of peaks with a margin for frequencies between those looked at."""
-    return _excess(tried.field.spec, found, _INSIDE * np.array([each.limit for each in tried.field.variants]))
+    return _excess(within.spec, found, _INSIDE * np.array([each.limit for each in within.variants]))
 
 
-def _excess(spec: SearchSpec, found: Outcome, limits: Array) -> float:
+def _excess(spec: TuningSpec, found: Outcome, limits: Array) -> float:
     over = [
         *(found.peaks / limits - 1.0),
         *(found.overshoot - spec.overshoot),
         *((spec.rejection or 0.0) / found.rejection[0] - 1.0),
         *((0.0 if spec.settling is None else found.settling / spec.settling - 1.0) * np.ones(len(found.settling))),
-        *(spec.delay_margin / found.delay_margin - 1.0),
+        *((spec.delay_margin or 0.0) / found.delay_margin - 1.0),
     ]
     return float(np.sum(np.maximum(over, 0.0)))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.control.robustness.measured_margins import ReadLines
+from flexstage.control.systems.curves import Curves
 from flexstage.show.figures.reading import Spot
 from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, Margins, canvas, panels, style_context
 
@@ -18,113 +19,77 @@ _FLOOR, _CEILING = 1e-4, 1e3
 _LEAST = 1e-300
 
 
-@dataclass(frozen=True, eq=False)
-class Curves:
-    """Complex values (f, n) over `frequencies` (f,) [Hz], one column a name."""
-
-    frequencies: Array
-    values: Array
-    names: tuple[str, ...]
-
-
-def open_loop_figure(found: Curves, marks: Array, noun: str = "open loop L", spots: Sequence[Spot] = ()) -> Any:
-    """Open loops, each alone with the others closed: magnitude over phase, gain 1 and -180 degrees drawn in, modes and `spots` marked.
-
-    >>> lines = np.geomspace(1.0, 1000.0, 50)
-    >>> len(open_loop_figure(Curves(lines, (30.0 / (1j * lines))[:, None], ("x",)), np.array([106.0])).axes)
-    2
-    """
+def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) -> Any:
+    """Open loops, each alone with the others closed: magnitude over phase, gain 1 and -180 degrees drawn in, modes and `spots` marked."""
     with style_context():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])
-        upper, lower = grid[0, 0], grid[1, 0]
+        (upper, lower), loops = grid[:, 0], found.loops
         for index, name in enumerate(found.names):
-            x, size = thin_out(found.frequencies, np.abs(found.values[:, index]))
+            x, size = thin_out(found.frequencies, np.abs(loops[:, index]))
             upper.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
-            x, phase = thin_out(found.frequencies, _phase(found.values[:, index]))
+            x, phase = thin_out(found.frequencies, _phase(loops[:, index]))
             lower.semilogx(x, phase, color=_colour(index), linewidth=1.0, linestyle=_dash(index))
         upper.axhline(1.0, color=INK, linewidth=0.7)
         lower.axhline(-180.0, color=INK, linewidth=0.7)
-        _set_limits(upper, found)
+        _set_limits(upper, loops)
         _mark_modes(upper, marks, found.frequencies)
         places = np.array([(each.x, each.y) for each in spots if each.y is not None]).reshape(-1, 2)
         upper.plot(*places.T, "o", color=INK, markersize=3.0, markerfacecolor=PAPER, markeredgewidth=0.7, zorder=5)
-        upper.set_ylabel(noun)
+        upper.set_ylabel("open loop L")
         upper.tick_params(labelbottom=False)
         lower.set_ylabel("phase [°]")
         _phase_ticks(lower)
         plain_ticks(lower.xaxis, upper.yaxis)
         lower.set_xlabel("frequency [Hz]")
-        lower.set_xlim(*_span(found))
+        lower.set_xlim(*_span(found.frequencies, loops))
         _legend(upper, len(found.names))
     return figure
 
 
-def sensitivity_figure(sensitivity: Curves, complementary: Curves, highest: float | None = None) -> Any:
-    """|S| (how much of a disturbance is left) beside |T| (what the loop follows), with the wanted highest peak of S.
-
-    >>> lines = np.geomspace(1.0, 1000.0, 50)
-    >>> S = Curves(lines, (1.0 / (1.0 + 30.0 / (1j * lines)))[:, None], ("x",))
-    >>> len(sensitivity_figure(S, Curves(lines, 1.0 - S.values, ("x",))).axes)
-    2
-    """
+def sensitivity_figure(found: Curves, highest: float) -> Any:
+    """Sensitivity |S| of each loop and complementary sensitivity |T|, with the highest peak of S allowed."""
+    own = np.diagonal(found.sensitivity, axis1=1, axis2=2)
     with style_context():
         figure = canvas(FULL, 2.5)
         grid = panels(figure, 1, 2, Margins(left=0.62, top=0.42, across=0.68))
-        for axes, curves, title in ((grid[0, 0], sensitivity, "sensitivity |S|"), (grid[0, 1], complementary, "following |T|")):
-            for index, name in enumerate(curves.names):
-                x, size = thin_out(curves.frequencies, np.abs(curves.values[:, index]))
+        for axes, values, title in ((grid[0, 0], own, "sensitivity |S|"), (grid[0, 1], 1.0 - own, "following |T|")):
+            for index, name in enumerate(found.names):
+                x, size = thin_out(found.frequencies, np.abs(values[:, index]))
                 axes.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
             axes.axhline(1.0, color=INK, linewidth=0.7)
-            axes.set_xlim(*_span(curves))
+            axes.set_xlim(*_span(found.frequencies, values))
             axes.set_ylim(1e-3, 10.0)
             plain_ticks(axes.xaxis, axes.yaxis)
             axes.set_xlabel("frequency [Hz]")
             axes.set_ylabel(title)
-        if highest is not None:
-            grid[0, 0].axhline(highest, color=SERIES[3], linewidth=0.8, linestyle="--")
-            grid[0, 0].text(_span(sensitivity)[0] * 1.15, highest * 1.1, f"{highest:.3g}", color=SERIES[3], fontsize=6.5)
-        _legend(grid[0, 0], len(sensitivity.names))
+        grid[0, 0].axhline(highest, color=SERIES[3], linewidth=0.8, linestyle="--")
+        left = _span(found.frequencies, own)[0] * 1.15
+        grid[0, 0].text(left, highest * 1.1, f"{highest:.3g}", color=SERIES[3], fontsize=6.5)
+        _legend(grid[0, 0], len(found.names))
     return figure
 
 
-@dataclass(frozen=True, eq=False)
-class Measured:
-    """Sizes (f, n) over `frequencies` (f,) [Hz], one column a name: measured with the ends of their intervals, of the fit, of the model."""
-
-    frequencies: Array
-    names: tuple[str, ...]
-    measured: Array
-    low: Array | None
-    high: Array | None
-    fitted: Array
-    predicted: Array
-
-
-def measured_figure(found: Measured) -> Any:
-    """|S| of every loop as the responses of a test tell it, shaded by its 95 % interval, over what fit and model say; one panel a loop.
-
-    >>> lines, ones = np.geomspace(1.0, 1000.0, 50), np.ones((50, 4))
-    >>> len(measured_figure(Measured(lines, ("x", "y", "z", "rz"), ones, 0.9 * ones, 1.1 * ones, ones, ones)).axes)
-    6
-    """
-    columns = min(3, len(found.names))
-    rows = -(-len(found.names) // columns)
+def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
+    """|S| of every loop by measured responses, shaded by its 95 % interval, over fit and model; one panel a loop."""
+    columns = min(3, len(names))
+    rows = -(-len(names) // columns)
     with style_context():
         figure = canvas(FULL, 0.55 + 1.55 * rows)
         grid = panels(figure, rows, columns, Margins(left=0.55, top=0.34, across=0.42, down=0.36))
         for index, axes in enumerate(grid.ravel()):
-            if index >= len(found.names):
+            if index >= len(names):
                 axes.set_visible(False)
                 continue
             _measured_panel(axes, found, index)
-            axes.set_xlabel("frequency [Hz]" if index + columns >= len(found.names) else "")
+            axes.set_title(names[index], loc="right")
+            axes.set_xlabel("frequency [Hz]" if index + columns >= len(names) else "")
             axes.set_ylabel("|S|" if index % columns == 0 else "")
         grid[0, 0].legend(loc="lower left", bbox_to_anchor=(-0.02, 1.12), ncols=4, borderaxespad=0.0, handlelength=1.6)
     return figure
 
 
-def _measured_panel(axes: Any, found: Measured, index: int) -> None:
+def _measured_panel(axes: Any, found: ReadLines, index: int) -> None:
     x = found.frequencies
     if found.low is not None and found.high is not None:
         axes.fill_between(x, found.low[:, index], found.high[:, index], color=SERIES[0], alpha=0.3, linewidth=0.0)
@@ -133,7 +98,6 @@ def _measured_panel(axes: Any, found: Measured, index: int) -> None:
     axes.loglog(*thin_out(x, found.predicted[:, index]), color=SERIES[1], linewidth=0.9, linestyle="--", label="model")
     axes.axhline(1.0, color=MUTED, linewidth=0.5)
     axes.set_xlim(float(x[0]), float(x[-1]))
-    axes.set_title(found.names[index], loc="right")
     plain_ticks(axes.xaxis, axes.yaxis)
 
 
@@ -211,16 +175,16 @@ def _dash(index: int) -> Any:
     return (0, (4.0, 2.0)) if index % 2 else "-"
 
 
-def _span(found: Curves) -> tuple[float, float]:
+def _span(frequencies: Array, values: Array) -> tuple[float, float]:
     """From where the loops have fallen to a hundred to the end."""
-    sizes = np.max(np.abs(found.values), axis=1)
+    sizes = np.max(np.abs(values), axis=1)
     high = np.flatnonzero(sizes > _CEILING)
     first = 0 if not len(high) or len(high) == len(sizes) else min(int(high[-1]), len(sizes) - 2)
-    return max(float(found.frequencies[first]), 1e-5 * float(found.frequencies[-1])), float(found.frequencies[-1])
+    return max(float(frequencies[first]), 1e-5 * float(frequencies[-1])), float(frequencies[-1])
 
 
-def _set_limits(axes: Any, found: Curves) -> None:
-    finite = np.abs(found.values)[np.isfinite(found.values)]
+def _set_limits(axes: Any, values: Array) -> None:
+    finite = np.abs(values)[np.isfinite(values)]
     axes.set_ylim(max(_FLOOR, 0.3 * float(np.min(finite, initial=1.0))), min(_CEILING, 3.0 * float(np.max(finite, initial=1.0))))
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,36 +12,25 @@ from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context
 
 
-@dataclass(frozen=True, eq=False)
-class HysteresisLoop:
-    """Strokes (n,) [m] that came of those that were `wanted` (n,) [m], by a name."""
-
-    name: str
-    wanted: Array
-    came: Array
-
-
-def hysteresis_figure(found: Sequence[HysteresisLoop]) -> Any:
-    """Strokes that came over those that were wanted, and beside them the difference of both.
+def hysteresis_figure(wanted: Array, reached: Mapping[str, Array]) -> Any:
+    """Strokes (n,) [m] over those `wanted` (n,), by name, and the difference of both.
 
     >>> way = 1e-6 * np.sin(np.linspace(0.0, 6.0, 50))
-    >>> len(hysteresis_figure([HysteresisLoop("without inverse", way, 0.9 * way)]).axes)
+    >>> len(hysteresis_figure(way, {"without inverse": 0.9 * way}).axes)
     2
     """
-    largest = max(float(np.max(np.abs(each.wanted), initial=0.0)) for each in found)
-    form = display_unit_of("m", largest)
+    largest = float(np.max(np.abs(wanted), initial=0.0))
+    errors = max(float(np.max(np.abs(each - wanted), initial=0.0)) for each in reached.values())
+    form, fine, step = display_unit_of("m", largest), display_unit_of("m", errors), max(1, len(wanted) // 1500)
     with style_context():
         figure = canvas(FULL, 2.75)
         grid = panels(figure, 1, 2, Margins(left=0.6, top=0.32, across=0.72))
-        errors = max(float(np.max(np.abs(each.came - each.wanted), initial=0.0)) for each in found)
-        fine = display_unit_of("m", errors)
         span = form.factor * largest * np.array([-1.0, 1.0])
         grid[0, 0].plot(span, span, color=INK, linewidth=0.6, linestyle=":")
-        for index, each in enumerate(found):
-            step = max(1, len(each.wanted) // 1500)
-            look = {"color": SERIES[(1, 0, 2)[index % 3]], "linewidth": 1.0, "label": each.name}
-            grid[0, 0].plot(form.factor * each.wanted[::step], form.factor * each.came[::step], **look)
-            grid[0, 1].plot(form.factor * each.wanted[::step], fine.factor * (each.came - each.wanted)[::step], **look)
+        for index, (name, each) in enumerate(reached.items()):
+            look = {"color": SERIES[(1, 0, 2)[index % 3]], "linewidth": 1.0, "label": name}
+            grid[0, 0].plot(form.factor * wanted[::step], form.factor * each[::step], **look)
+            grid[0, 1].plot(form.factor * wanted[::step], fine.factor * (each - wanted)[::step], **look)
         for axes in grid[0]:
             axes.set_xlabel(to_typography(f"wanted stroke [{form.unit}]"))
         grid[0, 0].set_ylabel(to_typography(f"stroke [{form.unit}]"))

@@ -3,58 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from flexstage.base.number import Array
-from flexstage.control.show.figures.frequency import thin_out
+from flexstage.control.noise import NoiseBudget
+from flexstage.control.show.figures.frequency import plain_ticks, thin_out
 from flexstage.show.display import display_unit_of, format_value, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context, text_width
+from flexstage.show.table import short_names
 
 _ROW = 0.24
 
 
-@dataclass(frozen=True, eq=False)
-class Shares:
-    """Mean squares (f, k) of coordinates by source, in the coordinates' squared units (f,)."""
-
-    coordinates: tuple[str, ...]
-    units: tuple[str, ...]
-    sources: tuple[str, ...]
-    squares: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Densities:
-    """One-sided densities (n, f) [unit^2/Hz] of coordinates over `frequencies` (n,) [Hz]."""
-
-    coordinates: tuple[str, ...]
-    units: tuple[str, ...]
-    frequencies: Array
-    density: Array
-
-
-def noise_share_figure(found: Shares) -> Any:
-    """The share of every source in the mean square of each coordinate, and its rms beside.
-
-    >>> shares = Shares(("x",), ("m",), ("gauges", "floor"), np.array([[4e-18, 1e-18]]))
-    >>> len(noise_share_figure(shares).axes)
-    1
-    """
-    total = np.sum(found.squares, axis=1)
+def noise_share_figure(found: NoiseBudget) -> Any:
+    """Share of every source in the mean square of each coordinate, and its rms."""
+    squares, coordinates = np.asarray(found.by_kind.values), short_names(found.output_names)
+    total = np.sum(squares, axis=1)
     with style_context():
         figure = canvas(FULL, 0.85 + _ROW * len(total))
         right = text_width(["100.0 nrad"]) + 0.15
-        axes = panels(figure, 1, 1, Margins(left=text_width(found.coordinates) + 0.25, right=right, top=0.32))[0, 0]
+        axes = panels(figure, 1, 1, Margins(left=text_width(coordinates) + 0.25, right=right, top=0.32))[0, 0]
         rows = np.arange(len(total))[::-1]
         left = np.zeros(len(total))
-        for index, source in enumerate(found.sources):
-            share = 100.0 * found.squares[:, index] / np.where(total > 0.0, total, 1.0)
+        for index, source in enumerate(found.by_kind.columns):
+            share = 100.0 * squares[:, index] / np.where(total > 0.0, total, 1.0)
             axes.barh(rows, share, left=left, height=0.66, color=SERIES[index % len(SERIES)], label=to_typography(source))
             left = left + share
-        for row, name, unit, square in zip(rows, found.coordinates, found.units, total, strict=True):
+        for row, name, unit, square in zip(rows, coordinates, found.units, total, strict=True):
             axes.text(-1.5, row, name, ha="right", va="center", fontsize=8.0)
             axes.text(
                 101.5, row, to_typography(format_value(float(np.sqrt(square)), unit, 3)), ha="left", va="center", fontsize=7.5, color=INK
@@ -68,13 +44,8 @@ def noise_share_figure(found: Shares) -> Any:
     return figure
 
 
-def noise_spectrum_figure(found: Densities) -> Any:
-    """Amplitude densities above, rms summed up from the lowest frequency below; lengths left, angles right.
-
-    >>> lines = np.geomspace(1.0, 1000.0, 40)
-    >>> len(noise_spectrum_figure(Densities(("x",), ("m",), lines, 1e-20 / lines[:, None])).axes)
-    2
-    """
+def noise_spectrum_figure(found: NoiseBudget) -> Any:
+    """Amplitude densities of each coordinate, and its rms summed up from the lowest frequency; a column for each unit."""
     units = tuple(dict.fromkeys(found.units))
     with style_context():
         figure = canvas(FULL, 3.5)
@@ -87,15 +58,15 @@ def noise_spectrum_figure(found: Densities) -> Any:
     return figure
 
 
-def _column(grid: Any, found: Densities, chosen: Sequence[int], unit: str) -> None:
-    density = found.density[:, chosen]
+def _column(grid: Any, found: NoiseBudget, chosen: Sequence[int], unit: str) -> None:
+    names, density = short_names(found.output_names), np.sum(found.density, axis=2)[:, chosen]
     steps = 0.5 * (density[1:] + density[:-1]) * np.diff(found.frequencies)[:, None]
     summed = np.sqrt(np.concatenate([np.zeros((1, len(chosen))), np.cumsum(steps, axis=0)]))
     form = display_unit_of(unit, float(np.max(summed, initial=0.0)))
     for index, column, total in zip(chosen, density.T, summed.T, strict=True):
         x, y = thin_out(found.frequencies, np.sqrt(column))
         look = {"color": SERIES[index % 7], "linewidth": 1.0, "linestyle": (0, (4.0, 2.0)) if index % 2 else "-"}
-        grid[0].loglog(x, form.factor * np.maximum(y, 1e-300), label=found.coordinates[index], **look)
+        grid[0].loglog(x, form.factor * np.maximum(y, 1e-300), label=names[index], **look)
         x, y = thin_out(found.frequencies, total)
         grid[1].semilogx(x, form.factor * y, **look)
     largest = form.factor * float(np.sqrt(np.max(density, initial=0.0)))
@@ -106,13 +77,4 @@ def _column(grid: Any, found: Densities, chosen: Sequence[int], unit: str) -> No
     grid[1].set_xlabel("frequency [Hz]")
     grid[1].set_xlim(float(found.frequencies[0]), float(found.frequencies[-1]))
     grid[0].tick_params(labelbottom=False)
-    _plain(grid)
-
-
-def _plain(grid: Any) -> None:
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-
-    for axis in (grid[0].xaxis, grid[1].xaxis, grid[0].yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0,), numticks=10))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_locator(NullLocator())
+    plain_ticks(grid[0].xaxis, grid[1].xaxis, grid[0].yaxis)
