@@ -10,7 +10,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.show.figures.style import ABOUT, ALONG, FULL, MUTED, style_context
 from flexstage.show.scene.skin import Kind
-from flexstage.show.scene.view import Side, View, arrows, draw, edges_of, picture_axes, triad, view, write
+from flexstage.show.scene.view import Side, View, arrows, draw, edges_of, name, picture_axes, triad, view, write
 from flexstage.show.viewer.data import StageData
 from flexstage.show.viewer.motions import Motion
 
@@ -89,23 +89,19 @@ def _arrows(axes: Any, start: Array, twist: Array, size: float, seen: View) -> N
         if own < _SMALL * sizes.max():
             continue
         direction = twist[part] / np.linalg.norm(twist[part])
-        name = names[int(np.argmax(np.abs(direction)))] if np.max(np.abs(direction)) > _ALONE else ""
+        axis = names[int(np.argmax(np.abs(direction)))] if np.max(np.abs(direction)) > _ALONE else ""
         if colour == ABOUT and abs(direction @ seen.axes[2]) > _ALONE:
-            _turn(axes, foot, 0.5e3 * _ARROW * size, float(direction @ seen.axes[2]), name)
+            _turn(axes, foot, 0.5e3 * _ARROW * size, float(direction @ seen.axes[2]), axis)
             continue
         reach = seen.project(_ARROW * size * direction * own / max(own, sizes.max()))
         arrows(axes, [foot], [reach], colour, 1.8)
-        _write(axes, foot + 1.2 * reach, name, colour)
+        name(axes, foot + 1.2 * reach, axis, colour)
 
 
-def _turn(axes: Any, middle: Array, radius: float, sense: float, name: str) -> None:
+def _turn(axes: Any, middle: Array, radius: float, sense: float, axis: str) -> None:
     """A turn about the direction of sight: an arc with a head."""
     angles = np.sign(sense) * np.linspace(-0.75 * np.pi, 0.5 * np.pi, 40)
     arc = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     axes.plot(*arc.T, color=ABOUT, linewidth=1.8)
     arrows(axes, [arc[-2]], [0.4 * radius * (arc[-1] - arc[-2]) / np.linalg.norm(arc[-1] - arc[-2])], ABOUT, 1.8)
-    _write(axes, middle + np.array([0.0, 1.45 * radius]), name, ABOUT)
-
-
-def _write(axes: Any, place: Array, name: str, colour: str) -> None:
-    axes.text(float(place[0]), float(place[1]), name, fontsize=8, fontweight="bold", color=colour, ha="center", va="center")
+    name(axes, middle + np.array([0.0, 1.45 * radius]), axis, ABOUT)

@@ -163,12 +163,10 @@ def _over(colours: Array, ground: Array) -> Array:
 
 
 def _lines(part: Array, edges: Array) -> Array:
-    """The pixels (h, w) of edges, and those where one part ends and the next begins, two wide."""
+    """The pixels (h, w) of edges, and those where one part ends and the next begins."""
     drawn = edges.copy()
     drawn[:, :-1] |= part[:, :-1] != part[:, 1:]
     drawn[:-1] |= part[:-1] != part[1:]
-    drawn[:, 1:] |= drawn[:, :-1].copy()
-    drawn[1:] |= drawn[:-1].copy()
     return drawn
 
 
@@ -211,10 +209,14 @@ def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
     """
     sizes = np.array([(_LETTER * len(label.text) + _ROUND, _LINE) for label in labels]).reshape(-1, 2)
     places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), _per_point(axes) * sizes)
+    for label, place in zip(labels, places, strict=True):
+        name(axes, place, label.text, _LABEL_COLOURS.get(label.kind, INK))
+
+
+def name(axes: Any, place: Array, text: str, colour: str) -> None:
+    """Write a name at a place (2,), on a lighter ground."""
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
-    for label, (x, y) in zip(labels, places, strict=True):
-        colour = _LABEL_COLOURS.get(label.kind, INK)
-        axes.text(x, y, label.text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box)
+    axes.text(*place, text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box if text else None)
 
 
 _LETTER, _ROUND, _LINE = 5.0, 4.0, 11.5
@@ -246,10 +248,10 @@ def triad(axes: Any, seen: View) -> None:
     """
     length = 0.05 * axes.viewLim.width
     start = axes.viewLim.min + 0.5 * length + np.clip(-1.2 * length * seen.axes[:2], 0.0, None).max(axis=1)
-    shown = {name: length * direction for name, direction in zip("xyz", seen.axes[:2].T, strict=True) if direction @ direction > 0.02}
+    shown = {axis: length * direction for axis, direction in zip("xyz", seen.axes[:2].T, strict=True) if direction @ direction > 0.02}
     arrows(axes, [start] * len(shown), list(shown.values()), MUTED, 0.8)
-    for name, reach in shown.items():
-        axes.text(*(start + 1.3 * reach), name, ha="center", va="center", fontsize=6.5, color=MUTED, style="italic")
+    for axis, reach in shown.items():
+        axes.text(*(start + 1.3 * reach), axis, ha="center", va="center", fontsize=6.5, color=MUTED, style="italic")
 
 
 def arrows(axes: Any, starts: Sequence[Array], reaches: Sequence[Array], colour: str, width: float) -> None:
@@ -280,4 +282,4 @@ def legend(data: StageData) -> tuple[tuple[str, str], ...]:
     ['platform', 'bodies', 'hinges', 'actuators', 'gauges', 'ground']
     """
     shown = {thing.kind for thing in data.things}
-    return tuple((_COLOURS[kind][0], name) for kind, name in NAMES.items() if kind in shown)
+    return tuple((_COLOURS[kind][0], words) for kind, words in NAMES.items() if kind in shown)
