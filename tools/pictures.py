@@ -43,9 +43,11 @@ from flexstage.show.figures.export import to_png, to_svg
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context
 from flexstage.show.plan import plan_figure
-from flexstage.show.scene.facet import Facet, Kind
-from flexstage.show.scene.stage import Scene, displace, largest_motion, scene
-from flexstage.show.scene.view import Side, draw, order_facets, outline, triad, view, write
+from flexstage.show.scene.pictures import stage_picture
+from flexstage.show.scene.skin import Kind
+from flexstage.show.scene.view import Side, draw, edges_of, fit, triad, view, write
+from flexstage.show.viewer.data import stage_data, still_data
+from flexstage.show.viewer.motions import Group
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from flexstage.solid.results.read import STANDARD_SOLIDS, read_solid
 from flexstage.solid.results.surface import mode_surfaces
@@ -83,50 +85,29 @@ _SIDES = ((Side.ISOMETRIC, (0, 0)), (Side.TOP, (0, 1)), (Side.FRONT, (1, 0)), (S
 
 def stage() -> Any:
     """The double-triangular stage from three sides and above the corner, all to one scale but for the corner."""
-    drawn = scene(double_triangle())
+    drawn = still_data(double_triangle())
     with style_context():
         figure = canvas(FULL, 0.68 * FULL)
         panels = figure.subplots(
             2, 2, height_ratios=(2.6, 1.0), gridspec_kw={"left": 0, "right": 1, "bottom": 0, "top": 1, "wspace": 0, "hspace": 0}
         )
         for side, place in _SIDES:
-            _side(panels[place], drawn, side)
+            seen, axes = view(side), panels[place]
+            _framed(axes, drawn.mesh.points, side)
+            draw(axes, drawn, seen)
+            write(axes, drawn.labels if side in (Side.ISOMETRIC, Side.TOP) else (), seen)
+            triad(axes, seen)
     return figure
 
 
-def _side(axes: Any, drawn: Scene, side: Side, gap: float = 12.0) -> None:
-    seen = view(side)
-    facets = order_facets(drawn, seen)
-    _framed(axes, facets, side, gap)
-    draw(axes, facets, seen)
-    if side in (Side.ISOMETRIC, Side.TOP):
-        write(axes, drawn.labels, seen)
-    triad(axes, seen)
-
-
-def _framed(axes: Any, facets: list[Facet], side: Side, gap: float = 12.0) -> None:
-    flat = np.concatenate([view(side).project(facet.points) for facet in facets])
-    axes.set_xlim(flat[:, 0].min() - gap, flat[:, 0].max() + gap)
-    axes.set_ylim(flat[:, 1].min() - gap, flat[:, 1].max() + gap)
-    axes.set_aspect("equal")
-    axes.set_axis_off()
+def _framed(axes: Any, points: Any, side: Side, gap: float = 12.0) -> None:
+    flat = view(side).project(points)
+    fit(axes, flat.min(axis=0) - gap, flat.max(axis=0) + gap)
 
 
 def guide() -> Any:
     """The parallelogram of the page on theory."""
-    return _alone(scene(fs.case("parallelogram")), FULL)
-
-
-def _alone(drawn: Scene, width: float) -> Any:
-    """A stage from above its corner."""
-    flat = np.concatenate([view(Side.ISOMETRIC).project(facet.points) for facet in drawn.facets])
-    extent = np.max(flat, axis=0) - np.min(flat, axis=0)
-    gap = 0.05 * float(np.max(extent))
-    across, up = (extent + 2.0 * gap).tolist()
-    with style_context():
-        figure = canvas(width, width * min(1.1, up / across))
-        _side(figure.add_axes((0.0, 0.0, 1.0, 1.0)), drawn, Side.ISOMETRIC, gap)
-    return figure
+    return stage_picture(still_data(fs.case("parallelogram")))
 
 
 def six_by_six() -> Any:
@@ -208,36 +189,31 @@ def sine() -> Any:
 
 def modes() -> Any:
     """The platform's modes, exaggerated, over its outline at rest; of repeated ones the first."""
-    drawn, model = scene(double_triangle()), fs.lumped(double_triangle())
+    model, seen = fs.lumped(double_triangle()), view(Side.ISOMETRIC)
     found = fs.modes(model)
-    kept = [facet for facet in order_facets(drawn, view(Side.ISOMETRIC)) if facet.paint.kind not in (Kind.GAUGE, Kind.GROUND)]
+    data = stage_data(double_triangle(), found=found)
+    motions = {motion.name: motion for motion in data.motions if motion.group is Group.MODE}
+    shown = (Kind.PLATFORM, Kind.BODY, Kind.HINGE, Kind.DRIVE)
     groups = [group for group in clusters(found.frequencies, 1e-6) if set(group) <= set(found.platform)]
     with style_context():
         figure = canvas(FULL, 0.58 * FULL)
-        for axes, group in zip(figure.subplots(2, 2).flat, groups, strict=True):
-            index = group[0]
-            twists = _twists(drawn, model, found.shapes[:, index])
-            _mode(axes, kept, displace(kept, drawn, twists, _SWAY / largest_motion(drawn, twists)))
+        for axes, group in zip(
+            figure.subplots(2, 2, gridspec_kw={"left": 0, "right": 1, "bottom": 0, "wspace": 0}).flat, groups, strict=True
+        ):
+            motion = motions[str(group[0] + 1)]
+            moved = data.mesh.points + _SWAY / data.reach(motion) * data.mesh.displacement(motion.twists)
+            _framed(axes, np.concatenate([data.mesh.points, moved]), Side.ISOMETRIC)
+            axes.plot(*edges_of(data, seen, Kind.PLATFORM).T, color=MUTED, linewidth=0.5, linestyle="--")
+            draw(axes, data, seen, moved, shown)
             times = ", twice" if len(group) == 2 else ""
-            axes.set_title(f"{found.names[index]}, {found.frequencies[index]:.1f} Hz{times}")
+            axes.set_title(f"{found.names[group[0]]}, {found.frequencies[group[0]]:.1f} Hz{times}")
     return figure
-
-
-def _twists(drawn: Scene, model: fs.LinearModel, shape: Any) -> dict[str, Any]:
-    return {body: model.output[model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS))] @ shape for body in drawn.references}
-
-
-def _mode(axes: Any, kept: list[Facet], moved: list[Facet]) -> None:
-    seen = view(Side.ISOMETRIC)
-    _framed(axes, [*kept, *moved], Side.ISOMETRIC)
-    outline(axes, [facet for facet in kept if facet.paint.kind is Kind.PLATFORM], seen)
-    draw(axes, moved, seen)
 
 
 def plan() -> Any:
     """The dimensioned plan."""
     mechanism = double_triangle()
-    return plan_figure(mechanism, scene(mechanism))
+    return plan_figure(mechanism, still_data(mechanism))
 
 
 def polar() -> Any:
@@ -477,7 +453,7 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
 
 def _shipped(name: str) -> Any:
     """A case of the gallery."""
-    return _alone(scene(fs.case(name)), 0.7 * FULL)
+    return stage_picture(still_data(fs.case(name)), width=0.7 * FULL)
 
 
 RASTER: Mapping[str, Callable[[], Any]] = {"solid": solid} | {f"case-{name}": partial(_shipped, name) for name in SHOWN}
@@ -498,7 +474,7 @@ def main() -> None:
     folder = parser.parse_args().png
     with threadpool_limits(limits=1):
         for name, figure in RASTER.items():
-            ((folder or PICTURES) / f"{name}.png").write_bytes(to_png(figure(), dots_per_inch=110))
+            ((folder or PICTURES) / f"{name}.png").write_bytes(to_png(figure()))
         for name, (figure, said) in DRAWN.items():
             if folder:
                 (folder / f"{name}.png").write_bytes(to_png(figure()))

@@ -270,12 +270,12 @@ def test_a_hinge_by_its_matrices_loses_what_the_drawn_one_loses(tmp_path):
 
 def test_pictures_show_it_between_its_ports_and_bend_it_with_their_bodies(folder):
     made = stage(part_of(elastic(5), folder))
-    bars = [facet for facet in scene(made).facets if facet.paint.name == "frame"]
-    assert {facet.paint.carriers for facet in bars} == {("ground", "platform"), ("ground", "top"), ("platform", "top")}
+    bars = [piece for piece in scene(made).pieces if piece.name == "frame"]
+    assert {piece.bodies for piece in bars} == {("ground", "platform"), ("ground", "top"), ("platform", "top")}
     shown = still_data(made)
     own = shown.mesh.part == [thing.name for thing in shown.things].index("frame")
     ends = {tuple(shown.bodies[number] for number in shown.mesh.bodies[carrier]) for carrier in shown.mesh.carrier[own]}
-    assert ends == {facet.paint.carriers for facet in bars}
+    assert ends == {piece.bodies for piece in bars}
 
 
 @pytest.mark.parametrize("form", ["npz", "mat", "sparse", "mat73", "mtx", "mtx dense", "millimetres"])

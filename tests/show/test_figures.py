@@ -11,18 +11,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.path import Path
-from matplotlib.transforms import IdentityTransform
 
 from flexstage.analysis.linear_statics.statics import directional
 from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
-from flexstage.show.figures.export import share_styles, to_png, to_svg
-from flexstage.show.figures.pen import course
+from flexstage.show.figures.export import to_png, to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.spectrum import spectrum_figure
-from flexstage.show.figures.style import canvas, style_context
+from flexstage.show.figures.style import INK, canvas, style_context
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.tables.lost_motion import budget_table
 from flexstage.show.tables.response import leading_curves
@@ -61,8 +58,8 @@ def test_bars_add_up_to_the_losses() -> None:
     assert lost is not None
     axes = loss_figure(lost).axes[0]
     ends = np.zeros(6)
-    for bar in (path.vertices for bars in axes.collections for path in bars.get_paths()):
-        ends[round(np.ptp(bar[:, 1]) / 2.0 + bar[:, 1].min())] += np.ptp(bar[:, 0])
+    for bar in axes.patches:
+        ends[round(bar.get_y() + 0.5 * bar.get_height())] += bar.get_width()
     assert np.allclose(ends, 100.0 * np.diagonal(lost.loss.values), rtol=1e-12)
 
 
@@ -75,7 +72,7 @@ def test_bars_name_the_links_of_other_units_as_the_table_does() -> None:
     table = budget_table(lost)
     assert table is not None
     assert {name for name in told if "/" in name} == {row[0] for row in table.texts() if "/" in row[0]} != set()
-    colours = [tuple(bars.get_facecolor()[0]) for bars in figure.axes[0].collections]
+    colours = [bars.patches[0].get_facecolor() for bars in figure.axes[0].containers]
     assert len(set(colours)) == len(told)
 
 
@@ -91,52 +88,38 @@ def test_the_polar_plot_shows_principal_axes() -> None:
     assert labels[1] == "others free: 2.621 along 134°, 2.191 across"
 
 
-def test_compaction_keeps_points_within_a_tenth() -> None:
-    points = np.random.default_rng(3).uniform(0.0, 400.0, (40, 2))
-    path = "M " + " L ".join(f"{x:.6f} {y:.6f}" for x, y in points) + " z"
-    short = course(Path([*points, points[0]], closed=True), IdentityTransform(), 500.0)
-    found = re.search(r"M([^a-z]*l[^a-z]*)z", short)
-    assert found is not None
-    numbers = [float(each) for each in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", found[1])]
-    steps = np.array(numbers).reshape(-1, 2)
-    assert np.max(np.abs(np.cumsum(steps, axis=0) - (points * [1.0, -1.0] + [0.0, 500.0]))) <= 0.05 + 1e-9
-    assert len(short) < 0.6 * len(path)
-
-
-def test_marks_of_one_look_are_one_path_and_stand_where_matplotlib_puts_them() -> None:
-    x = np.linspace(0.0, 1.0, 5)
-    with style_context():
-        figure = canvas(3.0, 2.0)
-        axes = figure.add_axes((0.2, 0.2, 0.7, 0.7))
-        axes.plot(x, x**2, "s", color="#009988")
-    text = sound(figure, "marks")
-    mark, places = re.findall(r'<marker id="([^"]+)".*?<path d="M([^"]+)"', text)[-1]  # the first are the marks of the axes
-    assert f"marker:url(#{mark})" in text
-    ends = axes.transData.transform(np.stack([x, x**2], axis=1)) * 72.0 / figure.dpi
-    assert np.allclose(np.array(places.split(), dtype=float).reshape(-1, 2), np.stack([ends[:, 0], 144.0 - ends[:, 1]], axis=1), atol=0.051)
-
-
-def test_pictures_of_a_page_share_their_styles_and_keep_their_looks() -> None:
-    """Every element has the rules it had by itself; a name that a user gave is no class."""
-    alone = [to_svg(spectrum_figure(found), name, 'class="one-0"') for name in ("one", "two") if (found := analysed("parallelogram").modes)]
-    page, sheet = share_styles("".join(alone))
-    looks = dict(re.findall(r"\.([\w-]+)\{([^}]*)\}", "".join(alone)))
-    shared = dict(re.findall(r"\.([\w-]+)\{([^}]*)\}", sheet))
-    before, after = (re.findall(r' class="([^"]+)"', text) for text in ("".join(alone), page))
-    assert [looks[each] for each in before] == [shared[each] for each in after]
-    assert len(shared) == len(set(looks.values())) < len(looks)
-    assert "<style>" not in page
-    assert page.count("class=&quot;one-0&quot;") == 2
-
-
-def test_what_styles_refer_to_is_in_the_page_that_shares_them() -> None:
-    """Marks of the same look in four axes: their style has a place of its own, so that their new name reaches it."""
+def test_identifiers_of_a_figure_are_its_own_and_what_refers_to_them_finds_them() -> None:
+    """Of the same figure under two names; a colour, a font or an identifier that a user wrote stays text."""
     with style_context():
         figure = canvas(3.0, 3.0)
         for axes in figure.subplots(2, 2).ravel():
-            axes.plot([0.0, 1.0], [0.0, 1.0])
-    page, sheet = share_styles(sound(figure, "n"))
-    assert set() != set(re.findall(r"url\(#([^)]+)\)", page + sheet)) <= set(re.findall(r' id="([^"]+)"', page))
+            axes.plot([0.0, 1.0], [0.0, 1.0], "s")
+            axes.set_title(f"id=\"a_1\" {INK} 'DejaVu' 1.2345 ")
+    both = [to_svg(figure, name, "d") for name in ("one", "two")]
+    own = [set(re.findall(r' id="([^"]+)"', text)) for text in both]
+    assert own[0].isdisjoint(own[1])
+    for text, names in zip(both, own, strict=True):
+        assert set() != set(re.findall(r"url\(#([^)]+)\)|href=\"#([^\"]+)\"", text))
+        assert {one or other for one, other in re.findall(r"url\(#([^)]+)\)|href=\"#([^\"]+)\"", text)} <= names
+        assert text.count(f"id=\"a_1\" {INK} 'DejaVu' 1.2345 <") == 4
+
+
+def test_an_image_stands_where_matplotlib_puts_it_and_colours_are_those_of_the_page() -> None:
+    image = np.full((3, 5, 4), 255, dtype=np.uint8)
+    with style_context():
+        figure = canvas(2.0, 1.0)
+        axes = figure.add_axes((0.25, 0.5, 0.5, 0.25))
+        axes.set_axis_off()
+        axes.imshow(image, interpolation="none", aspect="auto")
+        axes.plot([0.0, 1.0], [0.0, 1.0], color=INK)
+    text = sound(figure, "image")
+    found = re.search(r'<image [^>]*width="([\d.]+)" height="([\d.]+)"[^>]*transform="matrix\(([^)]+)\)"', text)
+    assert found is not None
+    wide, high, (a, b, c, d, x, y) = float(found[1]), float(found[2]), map(float, found[3].split())
+    assert (b, c) == (0.0, 0.0)
+    assert [x, y, a * wide, d * high] == pytest.approx([36.0, 18.0, 72.0, 18.0], abs=0.02)
+    assert f"stroke: var(--ink,{INK})" in text
+    assert "image-rendering" not in text
 
 
 def straight(axes: Any) -> None:

@@ -19,7 +19,7 @@ from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.shape import Shaped
-from flexstage.show.scene.facet import Kind
+from flexstage.show.scene.skin import Kind
 from flexstage.show.viewer.bend import Bend, bend_of
 from flexstage.show.viewer.data import StageData, stage_data, still_data
 from flexstage.show.viewer.fragment import bundle, data_script, element

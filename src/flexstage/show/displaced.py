@@ -21,7 +21,6 @@ from flexstage.show.display import format_value, to_typography
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.stroke import stroke_figure
 from flexstage.show.page import Fact, Facts, Head, Headline, Picture, Section, page, section
-from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, column_table, make_table, matrix_table, number_cells, result_table
@@ -37,19 +36,17 @@ _MEANING = {
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
     """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
-    seen, data = scene(mechanism), stroke_data(mechanism, path, found)
+    data = stroke_data(mechanism, path, found)
     said = limits(found)
     beyond = [each for each in said if each]
     figure = stroke_figure(curves_of(found.along), _flags(said))
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
     sections = (
-        stage_section(
-            seen, motion=f"path {path.drive}", said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."
-        ),
+        stage_section(data, said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."),
         section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
         caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
-        drawing_section(mechanism, seen),
+        drawing_section(mechanism, data),
     )
     good = not beyond
     text = words if good else f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}"
@@ -80,16 +77,16 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | No
 
     `after` is the path from where the least gives way.
     """
-    seen, least = scene(mechanism), found.least
+    least = found.least
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
     data = buckling_data(mechanism, known, after) if known else still_data(mechanism)
     moves = "The shape has no size of its own: it is drawn as large as the slider says."
     sections = (
-        stage_section(seen, motion="state buckling", said=moves) if known else stage_section(seen),
+        stage_section(data, said=moves if known else ""),
         section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
         None if after is None else _beyond_section(after.stroke),
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
-        drawing_section(mechanism, seen),
+        drawing_section(mechanism, data),
     )
     good = least is None or least.factor >= max(1.0, found.demand)
     headline = Headline(to_typography(_buckling_text(found)), good)
@@ -145,20 +142,20 @@ def _beyond_section(found: Stroke) -> Section | None:
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     """What a misaligned copy does, as a page of HTML: the stage as it is bent, loads, frequencies and stress over the misalignment."""
-    seen, data = scene(mechanism), misalign_data(mechanism, found)
+    data = misalign_data(mechanism, found)
     sections = (
-        _misaligned_stage(seen, data),
+        _misaligned_stage(data),
         _misaligned_curves(found),
         caveat_section(mechanism, found.warnings),
         section("Point by point", misaligned_tables(found)),
-        drawing_section(mechanism, seen),
+        drawing_section(mechanism, data),
     )
     headline = Headline(to_typography(_misaligned_text(found)), not bool(np.any(_beyond(found))))
     return _page(mechanism, "A misalignment", found.provenance, (headline, sections), data)
 
 
-def _misaligned_stage(seen: Scene, data: StageData) -> Section | None:
-    return stage_section(seen, motion=f"path {data.motions[0].name}", said="Flexures lie as it bends them. Red is beyond a limit.")
+def _misaligned_stage(data: StageData) -> Section | None:
+    return stage_section(data, said="Flexures lie as it bends them. Red is beyond a limit.")
 
 
 def _misaligned_curves(found: Misaligned) -> Section | None:
@@ -187,15 +184,15 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
 
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
     """What each copy bears, as a page of HTML; the worst of them is played."""
-    seen, worst = scene(mechanism), found.worst
+    worst = found.worst
     data = still_data(mechanism) if worst is None else misalign_data(mechanism, worst)
     sections = (
-        stage_section(seen) if worst is None else _misaligned_stage(seen, data),
+        stage_section(data) if worst is None else _misaligned_stage(data),
         section("Copy by copy", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
         caveat_section(mechanism, found.warnings),
         None if worst is None else section("The worst, point by point", misaligned_tables(worst)),
-        drawing_section(mechanism, seen),
+        drawing_section(mechanism, data),
     )
     provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"
     return _page(mechanism, "Misalignments", provenance, (Headline(to_typography(misalignments_text(found))), sections), data)
@@ -241,4 +238,4 @@ def _page(mechanism: Mechanism, kind: str, provenance: str, told: tuple[Headline
     headline, sections = told
     origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", __version__))
     head = Head(mechanism.name or "stage", kind, origin, headline)
-    return page(head, [each for each in sections if each is not None], {"stage": data})
+    return page(head, sections, {"stage": data})

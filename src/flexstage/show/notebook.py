@@ -19,9 +19,9 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show import render
+from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Prose
 from flexstage.show.scene.pictures import stage_picture
-from flexstage.show.scene.stage import scene
 from flexstage.show.table import Table, result_tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables
 from flexstage.show.tables.kinematics import mapping_table, mobility_table
@@ -32,6 +32,7 @@ from flexstage.show.tables.response import response_table
 from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
 from flexstage.show.tables.workspace import stroke_tables
+from flexstage.show.viewer.data import still_data
 
 _TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
     Table: lambda table: (table,),
@@ -66,7 +67,7 @@ def to_html(value: Any) -> str:
 
 def _picture(mechanism: Mechanism) -> str:
     try:
-        picture = stage_picture(scene(mechanism))
+        picture = stage_picture(still_data(mechanism))
     except DesignError as error:
         return "".join(str(render.templates().prose(Prose(str(finding)))) for finding in error.findings)
-    return picture.svg(f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")
+    return to_svg(picture, f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")

@@ -5,14 +5,13 @@ from __future__ import annotations
 import base64
 import functools
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from types import MappingProxyType
 from typing import TypeAlias
 
 from flexstage.base.text import printable
-from flexstage.show.figures.export import share_styles
 from flexstage.show.render import templates
 from flexstage.show.table import Table
 from flexstage.show.viewer.data import StageData
@@ -148,17 +147,18 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
     return Folded(title, kept) if kept else None
 
 
-def page(head: Head, sections: Sequence[Section], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
-    """The whole page as HTML; every text that comes in is escaped, SVG is taken as it is. `stages` are the data of its viewers by key.
+def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
+    """The whole page as HTML, of the sections that exist; every text that comes in is escaped, SVG is taken as it is.
 
-    Of scripts the browser runs the page's own alone, and it may load nothing: the page's policy says so.
+    `stages` are the data of its viewers by key. Of scripts the browser runs the page's own alone, and it may load nothing: the page's
+    policy says so.
 
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True
     """
     scripts = [_static("report.js"), *([bundle()] if stages else [])]
-    shown, pictures = share_styles(templates().page(head, sections, _static("report.css"), _policy(scripts)))
-    told = printable(shown.replace("</style></head>", f"{pictures}</style></head>", 1), keep="\n\t")
+    kept = [each for each in sections if each is not None]
+    told = printable(str(templates().page(head, kept, _static("report.css"), _policy(scripts))), keep="\n\t")
     data = "".join(data_script(key, each) for key, each in stages.items())
     return told + data + "".join(f"<script>{each}</script>" for each in scripts) + "</body></html>\n"
 

@@ -10,7 +10,6 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.show.page import Head, page
-from flexstage.show.scene.stage import scene
 from flexstage.show.sections.accuracy import drift_section, error_section
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.dynamics import mode_section, response_section
@@ -18,7 +17,7 @@ from flexstage.show.sections.mechanics import kinematics_section, lost_motion_se
 from flexstage.show.sections.overview import change_section, headline, requirement_section, summary_section
 from flexstage.show.sections.reach import strength_section, workspace_section
 from flexstage.show.sections.sources import description_section, limit_section, reference_section
-from flexstage.show.sections.stage import drawing_section, first_motion, stage_section
+from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.show.viewer.motions import Group
 
@@ -37,18 +36,18 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     '<!doctype html>'
     """
     mechanism = analysis.mechanism
-    seen, data = scene(mechanism), _turning(analysis)
+    data = _turning(analysis)
     sections = (
-        stage_section(seen, motion=first_motion(data)),
+        stage_section(data),
         requirement_section(analysis),
         caveat_section(mechanism, () if analysis.ends is None else analysis.ends.warnings),
         change_section(analysis, compared),
         summary_section(analysis),
-        drawing_section(mechanism, seen),
+        drawing_section(mechanism, data),
         kinematics_section(analysis),
         stiffness_section(analysis),
         lost_motion_section(analysis),
-        mode_section(analysis, seen),
+        mode_section(analysis, data),
         response_section(analysis),
         workspace_section(analysis),
         strength_section(analysis),
@@ -58,7 +57,7 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
         limit_section(analysis),
         reference_section(analysis),
     )
-    return page(_head(analysis), [each for each in sections if each is not None], {"stage": data})
+    return page(_head(analysis), sections, {"stage": data})
 
 
 def _turning(analysis: Analysis) -> StageData:

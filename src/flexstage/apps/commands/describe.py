@@ -31,8 +31,8 @@ from flexstage.show.document import FORMAT, check_document
 from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, find_section, parameter_table
 from flexstage.show.plan import plan_figure
-from flexstage.show.scene.stage import scene
 from flexstage.show.tables.description import composition_table
+from flexstage.show.viewer.data import still_data
 from flexstage.studies.form import study_schema
 
 DEFAULT_CASE = "double-triangle"
@@ -141,7 +141,7 @@ def plan(
     """
     ending = format_of(str(output))
     mechanism = open_design(design, changes, [("--output", output)])
-    write(output, drawing(plan_figure(mechanism, scene(mechanism)), ending), "--output")
+    write(output, drawing(plan_figure(mechanism, still_data(mechanism)), ending), "--output")
     announce(f"Wrote {output}")
 
 

@@ -17,9 +17,8 @@ from flexstage.control.study.study import LoopStudy
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Head, Headline, Picture, page, section
-from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import first_motion, stage_section
+from flexstage.show.sections.stage import stage_section
 from flexstage.show.viewer.data import stage_data
 from flexstage.show.viewer.motions import Group
 
@@ -38,7 +37,7 @@ def loop_report(found: LoopStudy) -> str:
     data = replace(data, motions=(*response_motions(found, data), *data.motions))
     played = next((f"{each.group.value} {each.name}" for each in data.motions if each.group is Group.RESPONSE), "")
     sections = (
-        stage_section(scene(mechanism), motion=played or first_motion(data)),
+        stage_section(data, motion=played or None),
         loop_section(found),
         caveat_section(mechanism, found.warnings),
         frequency_section(found),
@@ -47,7 +46,7 @@ def loop_report(found: LoopStudy) -> str:
         error_section(found),
     )
     head = Head(mechanism.name or "stage", f"Control loop, {found.settled.model_name.partition(',')[0]} model", origin, headline(found))
-    return page(head, [each for each in sections if each is not None], {"stage": data})
+    return page(head, sections, {"stage": data})
 
 
 def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison) -> str:
@@ -69,10 +68,10 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     )
     compared, by_coordinate = comparison_tables(found)
     sections = (
-        stage_section(scene(mechanism), motion=first_motion(data)),
+        stage_section(data),
         section("Comparison of controllers", [compared, drawn if lines else None]),
         caveat_section(mechanism, found.warnings),
         section("By coordinate", [by_coordinate]),
     )
     head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))
-    return page(head, [each for each in sections if each is not None], {"stage": data})
+    return page(head, sections, {"stage": data})

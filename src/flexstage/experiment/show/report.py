@@ -24,9 +24,8 @@ from flexstage.experiment.show.sections import (
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.display import NO_VALUE, number, percent
 from flexstage.show.page import Head, Headline, Section, page
-from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import first_motion, stage_section
+from flexstage.show.sections.stage import stage_section
 from flexstage.show.viewer.data import StageData, stage_data
 
 
@@ -41,28 +40,26 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
     said = _found_headline(seen)
     if mechanism is None:
         return _page("Modes identified in a test", said, None, seen, [None, *_sections(seen)])
-    drawn = scene(mechanism)
-    data = _with_measured(stage_data(mechanism), seen, shapes, drawn)
-    sections = [stage_section(drawn, motion=first_motion(data)), *_sections(seen, _measured(seen, shapes, drawn))]
+    data = _with_measured(stage_data(mechanism), seen, shapes)
+    sections = [stage_section(data), *_sections(seen, _measured(seen, shapes, data))]
     return _page("Modes identified in a test", said, mechanism, seen, sections, data=data)
 
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
     """Theory, FEA and experiment as a page of HTML, followed by what the experiment rests on."""
-    drawn = scene(mechanism)
-    data = _with_measured(stage_data(mechanism, model=read(mechanism, found.model)), seen, shapes, drawn)
-    head = [stage_section(drawn, motion=first_motion(data)), compare_section(found), pair_section(found, data)]
-    sections = [*head, *_sections(seen, _measured(seen, shapes, drawn))]
+    data = _with_measured(stage_data(mechanism, model=read(mechanism, found.model)), seen, shapes)
+    head = [stage_section(data), compare_section(found), pair_section(found, data)]
+    sections = [*head, *_sections(seen, _measured(seen, shapes, data))]
     return _page("Theory and experiment", _compared_headline(found), mechanism, seen, sections, data=data)
 
 
-def _with_measured(data: StageData, seen: Identification, shapes: StageShapes | None, drawn: Scene) -> StageData:
+def _with_measured(data: StageData, seen: Identification, shapes: StageShapes | None) -> StageData:
     """The stage's motions, and those measured."""
-    return data if shapes is None else replace(data, motions=(*data.motions, *measured_motions(seen.found, shapes, drawn)))
+    return data if shapes is None else replace(data, motions=(*data.motions, *measured_motions(seen.found, shapes, data.bones)))
 
 
-def _measured(seen: Identification, shapes: StageShapes | None, drawn: Scene) -> Section | None:
-    return None if shapes is None else measured_shape_section(seen.found, shapes, drawn)
+def _measured(seen: Identification, shapes: StageShapes | None, data: StageData) -> Section | None:
+    return None if shapes is None else measured_shape_section(seen.found, shapes, data)
 
 
 def _found_headline(seen: Identification) -> Headline:
@@ -103,5 +100,4 @@ def _page(
         origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))
     title = (mechanism.name if mechanism is not None else "") or named
     known = None if mechanism is None else caveat_section(mechanism)
-    shown = [each for each in (*sections[:2], known, *sections[2:]) if each is not None]
-    return page(Head(title, kind, tuple(origin), said), shown, {} if data is None else {"stage": data})
+    return page(Head(title, kind, tuple(origin), said), (*sections[:2], known, *sections[2:]), {} if data is None else {"stage": data})

@@ -30,7 +30,6 @@ from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.style import THIRD
 from flexstage.show.page import Abreast, Block, Picture, Prose, Section, fold, section
 from flexstage.show.scene.pictures import mode_picture
-from flexstage.show.scene.stage import Scene
 from flexstage.show.sections.dynamics import SHAPES
 from flexstage.show.sections.stage import joined_viewers, platform_modes
 from flexstage.show.table import Table, result_table
@@ -108,7 +107,7 @@ def stabilisation_section(found: Identified) -> Section | None:
     return section("Stabilisation", [Picture(drawn, caption)])
 
 
-def measured_shape_section(found: Identified, shapes: StageShapes, seen: Scene) -> Section | None:
+def measured_shape_section(found: Identified, shapes: StageShapes, data: StageData) -> Section | None:
     """The measured shapes drawn as motion of the stage, or why they cannot be; `None` where no mode was found."""
     if not len(found.frequencies):
         return None
@@ -118,12 +117,11 @@ def measured_shape_section(found: Identified, shapes: StageShapes, seen: Scene) 
         f"From {', '.join(shapes.used)}, through the inverse of the ideal stage's mapping; bodies move as ideal hinges let them. "
         f"{motion_explained_text(shapes.explained)} {SHAPES}"
     )
-    return section("Shapes on the stage", [Abreast(tuple(_pictures(found, shapes, seen)), narrow=True), Prose(note)])
+    return section("Shapes on the stage", [Abreast(tuple(_pictures(found, data)), narrow=True), Prose(note)])
 
 
-def measured_motions(found: Identified, shapes: StageShapes, seen: Scene) -> tuple[Motion, ...]:
+def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) -> tuple[Motion, ...]:
     """The measured shapes as motions of a viewer; none where they cannot be drawn on the stage."""
-    bones = Skeleton(seen.references)
     return tuple(
         Motion(
             Group.MODE,
@@ -150,13 +148,13 @@ def pair_section(found: Compared, data: StageData) -> Section | None:
     return None if joined is None else section("Side by side", [joined, Prose(text)])
 
 
-def _pictures(found: Identified, shapes: StageShapes, seen: Scene) -> Iterator[Picture]:
-    for index, frequency in enumerate(found.frequencies):
-        twists = {name: twist[:, index] for name, twist in shapes.motions.items() if name in seen.references}
-        picture = mode_picture(seen, twists, width=THIRD)
-        if picture is not None:
-            caption = f"{index + 1}: {number(float(frequency))} Hz, damping {number(100.0 * float(found.damping[index]), 3)} %"
-            yield Picture(picture.svg(f"measured{index + 1}", caption), caption, f"mode measured {index + 1}")
+def _pictures(found: Identified, data: StageData) -> Iterator[Picture]:
+    motions = {each.name: each for each in data.motions}
+    for number_of, (frequency, damping) in enumerate(zip(found.frequencies, found.damping, strict=True), start=1):
+        figure = mode_picture(data, motions[f"measured {number_of}"], width=THIRD)
+        if figure is not None:
+            caption = f"{number_of}: {number(float(frequency))} Hz, damping {number(100.0 * float(damping), 3)} %"
+            yield Picture(to_svg(figure, f"measured{number_of}", caption), caption, f"mode measured {number_of}")
 
 
 def compare_section(found: Compared) -> Section | None:

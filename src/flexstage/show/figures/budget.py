@@ -11,7 +11,7 @@ from flexstage.analysis.assessment.error_budget import ErrorBudget
 from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.base.number import Array
 from flexstage.show.display import display_unit_of, number, percent, to_typography
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, name_rows, panels, style_context, text_width
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.show.table import first_design
 from flexstage.show.tables.lost_motion import energy_shares, foreign_links, named_budget
 
@@ -66,11 +66,11 @@ def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str
         for part in parts:
             widths = 100.0 * np.array([_share(shares[name], part, parts) for name in names])
             starts = np.where(widths >= 0.0, right, left)
-            _bars(axes, rows, starts, widths, height=0.62, colour=colours[part], label=part)
+            axes.barh(rows, widths, 0.62, starts, color=colours[part], label=part)
             right, left = right + np.maximum(widths, 0.0), left + np.minimum(widths, 0.0)
         for row, name in enumerate(names):
             _place_beside(axes, (right[row], row), totals[name], INK)
-        name_rows(axes, rows, names)
+        axes.set_yticks(rows, names)
         _format_axes(axes, label)
         _widen_right(axes, 1.13)
         if parts:  # massless axial springs lose nothing: there is nothing to name
@@ -116,21 +116,7 @@ def _tinted(colour: str, white: float) -> str:
     return "#" + "".join(f"{round(part + white * (255 - part)):02x}" for part in parts)
 
 
-def _bars(axes: Any, rows: Array, starts: Array, widths: Array, *, height: float, colour: str, label: str) -> None:
-    """Bars of one colour as one artist: matplotlib's bars are one each, which takes several times as long."""
-    from matplotlib.collections import PolyCollection
-
-    half = 0.5 * height
-    x, y = (starts, starts, starts + widths, starts + widths), (rows - half, rows + half, rows + half, rows - half)
-    corners = np.stack([x, y], axis=-1).swapaxes(0, 1)
-    drawn = PolyCollection(list(corners[widths != 0.0]), linewidths=0.0, facecolors=colour, label=label)
-    drawn.sticky_edges.x.append(0.0)
-    axes.add_collection(drawn, autolim=False)
-    axes.update_datalim(corners.reshape(-1, 2))
-
-
 def _format_axes(axes: Any, label: str) -> None:
-    axes.autoscale_view()
     axes.invert_yaxis()
     axes.set_xlabel(label)
     axes.grid(visible=False, axis="y")
@@ -171,10 +157,10 @@ def _error_panel(axes: Any, budget: ErrorBudget, rows: slice, unit: str) -> None
         for index, source in enumerate(budget.ideal.columns):
             widths = form.factor * values[:, index]
             label = source if name == "ideal" else ""
-            _bars(axes, places + offset, start, widths, height=0.32, colour=SERIES[index % len(SERIES)], label=label)
+            axes.barh(places + offset, widths, 0.32, start, color=SERIES[index % len(SERIES)], label=label)
             start = start + widths
         _bar_texts(axes, places + offset, start, name)
-    name_rows(axes, places, budget.ideal.rows[rows])
+    axes.set_yticks(places, budget.ideal.rows[rows])
     _format_axes(axes, to_typography(f"largest error [{form.unit}]"))
     _widen_right(axes, 1.3)
 

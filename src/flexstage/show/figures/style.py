@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 INK = "#1f2a37"
@@ -55,16 +54,18 @@ _RC: dict[Any, Any] = {
     "figure.facecolor": "none",
     "savefig.facecolor": "none",
     "svg.fonttype": "none",
-    "svg.hashsalt": "flexstage",
     "path.simplify": True,
     "axes.unicode_minus": True,
+    "image.composite_image": False,
     "axes.formatter.use_mathtext": False,
 }
 
 
 @contextmanager
-def style_context() -> Generator[None]:
+def style_context(salt: str = "flexstage") -> Generator[None]:
     """The style, while a figure is drawn and written; matplotlib's settings are as before afterwards.
+
+    Identifiers of SVG that is written differ where its `salt` does.
 
     >>> with style_context():
     ...     from matplotlib import rcParams
@@ -73,7 +74,7 @@ def style_context() -> Generator[None]:
     """
     import matplotlib as mpl
 
-    with mpl.rc_context(_RC):
+    with mpl.rc_context({**_RC, "svg.hashsalt": salt}):
         yield
 
 
@@ -129,19 +130,6 @@ def _limit_margins(margins: Margins, size: tuple[float, float], count: tuple[int
     return Margins(x * margins.left, x * margins.right, y * margins.bottom, y * margins.top, x * margins.across, y * margins.down)
 
 
-def name_rows(axes: Any, places: Iterable[float], names: Sequence[str]) -> None:
-    """Names at places along y. matplotlib's own way to say them makes five artists a name at once, which pages do without.
-
-    >>> axes = canvas(2.0, 1.0).add_subplot()
-    >>> name_rows(axes, [0.0, 1.0], ["B1", "B2"])
-    >>> axes.yaxis.get_majorticklocs().tolist()
-    [0.0, 1.0]
-    """
-    from matplotlib.ticker import FixedFormatter, FixedLocator
-
-    axes.yaxis.set(major_locator=FixedLocator(list(places)), major_formatter=FixedFormatter(list(names)))
-
-
 def text_width(texts: Iterable[str], size: float = 8.0) -> float:
     """About how wide the longest of some texts is, in inches.
 
@@ -149,32 +137,3 @@ def text_width(texts: Iterable[str], size: float = 8.0) -> float:
     0.53
     """
     return max((len(text) for text in texts), default=0) * 0.6 * size / 72.0
-
-
-def theme_colour(colour: str) -> str:
-    """A colour as the page's variable, where it has one.
-
-    >>> theme_colour("#b9c2cc"), theme_colour(INK)
-    ('#b9c2cc', 'var(--ink,#1f2a37)')
-    """
-    return f"var(--{THEME[colour]},{colour})" if colour in THEME else colour
-
-
-def short(value: float, decimals: int = 1) -> str:
-    """A number as short as it goes.
-
-    >>> short(-0.04), short(12.0), short(-0.5), short(1.444, 2)
-    ('0', '12', '-.5', '1.44')
-    """
-    return decimal(round(value * 10**decimals), decimals)
-
-
-@lru_cache(maxsize=1 << 12)
-def decimal(value: int, decimals: int) -> str:
-    """An integer number of units of the last decimal, as short as it goes.
-
-    >>> decimal(-5, 1), decimal(120, 1)
-    ('-.5', '12')
-    """
-    text = f"{value / 10**decimals:.{decimals}f}".rstrip("0").rstrip(".")
-    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text

@@ -12,8 +12,8 @@ import numpy as np
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Array, Number
 from flexstage.show.display import DisplayUnit, display_unit_of, to_typography
+from flexstage.show.figures.hull import hull
 from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, style_context
-from flexstage.show.scene.silhouette import hull
 from flexstage.show.table import first_design
 from flexstage.spatial.frame import MOTION
 

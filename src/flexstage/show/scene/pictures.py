@@ -2,106 +2,106 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.show.figures.scenery import Paper
-from flexstage.show.figures.style import ABOUT, ALONG, FULL
-from flexstage.show.scene.facet import Facet, Kind
-from flexstage.show.scene.stage import Scene, displace, largest_motion
-from flexstage.show.scene.view import Side, View, draw, order_facets, outline, triad, view, write
+from flexstage.show.figures.style import ABOUT, ALONG, FULL, MUTED, style_context
+from flexstage.show.scene.skin import Kind
+from flexstage.show.scene.view import Side, View, arrows, draw, edges_of, name, picture_axes, triad, view, write
+from flexstage.show.viewer.data import StageData
+from flexstage.show.viewer.motions import Motion
 
-_TALLEST = 1.1
-_MOVED = (Kind.PLATFORM, Kind.BODY, Kind.DRIVE)
+_MOVED = (Kind.PLATFORM, Kind.BODY, Kind.HINGE, Kind.DRIVE)
 _REACH = 0.11
 """The largest motion in the picture of a mode, of the stage's diagonal."""
 _ARM, _ARROW, _SMALL, _ALONE = 0.25, 0.24, 0.4, 0.9
 _IN_PLANE, _OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
-_SHAFT = {"arrowstyle": "-|>", "lw": 1.8, "mutation_scale": 9, "shrinkA": 0.0, "shrinkB": 0.0}
 
 
-def stage_picture(scene: Scene, *, side: Side = Side.ISOMETRIC, width: float = FULL, names: bool = True) -> Paper:
-    """The stage from one side, with the names of actuators and gauges.
+def stage_picture(data: StageData, *, side: Side = Side.ISOMETRIC, width: float = FULL, names: bool = True) -> Any:
+    """The stage from one side, with the names of actuators and gauges, as a matplotlib Figure.
 
-    >>> from flexstage.mechanism.mechanism import Mechanism
-    >>> from flexstage.show.scene.stage import scene
-    >>> stage_picture(scene(Mechanism("")), side=Side.TOP).svg("top", "nothing")[:24]
-    '<svg viewBox="0 0 518.4 '
+    >>> from flexstage.cases.registry import case
+    >>> from flexstage.show.viewer.data import still_data
+    >>> len(stage_picture(still_data(case("parallelogram")), side=Side.TOP).axes[0].images)
+    1
     """
     seen = view(side)
-    facets = order_facets(scene, seen)
-    paper = _paper(facets, seen, width)
-    draw(paper, facets, seen)
-    write(paper, scene.labels if names else (), seen, paper.per_point)
-    triad(paper, seen)
-    return paper
+    with style_context():
+        axes = picture_axes(data.mesh.points, seen, width)
+        draw(axes, data, seen)
+        write(axes, data.labels if names else (), seen)
+        triad(axes, seen)
+    return axes.figure
 
 
-def mode_picture(scene: Scene, twists: Mapping[str, Array], *, width: float = FULL) -> Paper | None:
-    """The stage moved by its bodies' twists, as far as to be seen, over the platform's outline at rest; hinges and gauges left out.
+def mode_picture(data: StageData, motion: Motion, *, width: float = FULL) -> Any | None:
+    """The stage moved as far as to be seen, over the platform's outline at rest, without gauges, as a matplotlib Figure.
 
     Seen from above where the platform stays in its plane, else from above a corner. Arrows are the platform's motion: blue along, red
     about; `None` where nothing moves.
 
-    >>> from flexstage.mechanism.mechanism import Mechanism
-    >>> from flexstage.show.scene.stage import scene
-    >>> mode_picture(scene(Mechanism("")), {}) is None
-    True
+    >>> from flexstage.cases.registry import case
+    >>> from flexstage.show.viewer.data import stage_data
+    >>> data = stage_data(case("parallelogram"))
+    >>> [text.get_text() for text in mode_picture(data, data.motions[0]).axes[0].texts]
+    ['x', 'y', 'z', 'z', 'rx']
     """
-    largest = largest_motion(scene, twists)
-    if largest == 0.0:
+    reach = data.reach(motion)
+    if reach == 0.0:
         return None
-    twist = np.real(twists.get(PLATFORM, np.zeros(6)))
-    sizes = np.abs(twist) * np.array([1.0] * 3 + [_ARM * scene.size] * 3)
+    start, twist = _platform_twist(data, motion)
+    sizes = _sizes(twist, data.size)
     seen = view(Side.TOP if sizes[_IN_PLANE].max() > sizes[_OUT_OF_PLANE].max() else Side.ISOMETRIC)
-    still = [facet for facet in order_facets(scene, seen) if facet.paint.kind in _MOVED]
-    moved = displace(still, scene, twists, _REACH * scene.size / largest)
-    paper = _paper([*still, *moved], seen, width)
-    draw(paper, moved, seen)
-    outline(paper, [facet for facet in still if facet.paint.kind is Kind.PLATFORM], seen)
-    triad(paper, seen)
-    if np.any(sizes):
-        _arrows(paper, scene, twist, sizes, seen)
-    return paper
+    moved = data.mesh.points + _REACH * data.size / reach * data.mesh.displacement(motion.twists)
+    shown = np.array([thing.kind in _MOVED for thing in data.things], dtype=bool)[data.mesh.part]
+    with style_context():
+        axes = picture_axes(np.concatenate([data.mesh.points[shown], moved[shown]]), seen, width)
+        draw(axes, data, seen, moved, _MOVED)
+        axes.plot(*edges_of(data, seen, Kind.PLATFORM).T, color=MUTED, linewidth=0.5, linestyle="--")
+        triad(axes, seen)
+        if np.any(sizes):
+            _arrows(axes, start, twist, data.size, seen)
+    return axes.figure
 
 
-def _arrows(axes: Paper, scene: Scene, twist: Array, sizes: Array, seen: View) -> None:
+def _platform_twist(data: StageData, motion: Motion) -> tuple[Array, Array]:
+    """The platform's reference point (3,) and its twist (6,) there; zeros without a platform."""
+    if PLATFORM not in data.bodies:
+        return np.zeros(3), np.zeros(6)
+    start, twist = data.bones.references[PLATFORM], motion.twists[data.bodies.index(PLATFORM)]
+    return start, np.concatenate([twist[:3] + np.cross(twist[3:], start), twist[3:]])
+
+
+def _sizes(twist: Array, size: float) -> Array:
+    """How much a twist (6,) moves what lies at an arm's length of its reference, on a stage of that size."""
+    return np.abs(twist) * np.array([1.0] * 3 + [_ARM * size] * 3)
+
+
+def _arrows(axes: Any, start: Array, twist: Array, size: float, seen: View) -> None:
     """The platform's translation and rotation, each where it is not small beside the other, named where it is along one axis."""
-    start, largest = scene.references[PLATFORM], sizes.max()
+    sizes, foot = _sizes(twist, size), seen.project(start)
     for part, names, colour in ((slice(0, 3), "xyz", ALONG), (slice(3, 6), ("rx", "ry", "rz"), ABOUT)):
-        size = float(np.sqrt(np.sum(sizes[part] ** 2)))
-        if size < _SMALL * largest:
+        own = float(np.linalg.norm(sizes[part]))
+        if own < _SMALL * sizes.max():
             continue
-        direction = twist[part] / np.sqrt(np.sum(twist[part] ** 2))
-        name = names[int(np.argmax(np.abs(direction)))] if np.max(np.abs(direction)) > _ALONE else ""
+        direction = twist[part] / np.linalg.norm(twist[part])
+        axis = names[int(np.argmax(np.abs(direction)))] if np.max(np.abs(direction)) > _ALONE else ""
         if colour == ABOUT and abs(direction @ seen.axes[2]) > _ALONE:
-            _turn(axes, seen.project(start), 0.5e3 * _ARROW * scene.size, float(direction @ seen.axes[2]), name)
+            _turn(axes, foot, 0.5e3 * _ARROW * size, float(direction @ seen.axes[2]), axis)
             continue
-        tip = seen.project(start + _ARROW * scene.size * direction * size / max(size, largest))
-        axes.annotate("", xy=tuple(tip), xytext=tuple(seen.project(start)), arrowprops={**_SHAFT, "color": colour})
-        _write(axes, seen.project(start) + 1.2 * (tip - seen.project(start)), name, colour)
+        reach = seen.project(_ARROW * size * direction * own / max(own, sizes.max()))
+        arrows(axes, [foot], [reach], colour, 1.8)
+        name(axes, foot + 1.2 * reach, axis, colour)
 
 
-def _turn(axes: Paper, middle: Array, radius: float, sense: float, name: str) -> None:
+def _turn(axes: Any, middle: Array, radius: float, sense: float, axis: str) -> None:
     """A turn about the direction of sight: an arc with a head."""
     angles = np.sign(sense) * np.linspace(-0.75 * np.pi, 0.5 * np.pi, 40)
     arc = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     axes.plot(*arc.T, color=ABOUT, linewidth=1.8)
-    axes.annotate("", xy=tuple(arc[-1] + 0.35 * (arc[-1] - arc[-4])), xytext=tuple(arc[-2]), arrowprops={**_SHAFT, "color": ABOUT})
-    _write(axes, middle + np.array([0.0, 1.45 * radius]), name, ABOUT)
-
-
-def _write(axes: Paper, place: Array, name: str, colour: str) -> None:
-    axes.text(float(place[0]), float(place[1]), name, fontsize=8, fontweight="bold", color=colour)
-
-
-def _paper(facets: list[Facet], seen: View, width: float) -> Paper:
-    """Paper that the facets fill, as high as they need."""
-    flat = seen.project(np.concatenate([facet.points for facet in facets] or [np.zeros((1, 3))]))
-    low, high = flat.min(axis=0), flat.max(axis=0)
-    gap = 0.05 * float(max(high - low)) or 1.0
-    extent = high - low + 2.0 * gap
-    return Paper(low - gap, high + gap, width, width * min(_TALLEST, float(extent[1] / extent[0])))
+    arrows(axes, [arc[-2]], [0.4 * radius * (arc[-1] - arc[-2]) / np.linalg.norm(arc[-1] - arc[-2])], ABOUT, 1.8)
+    name(axes, middle + np.array([0.0, 1.45 * radius]), axis, ABOUT)

@@ -1,8 +1,9 @@
-"""What each part and each outline of a body looks like: facets in its own frame."""
+"""What each part and each outline of a body looks like: a skin in its own frame."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, 
 from flexstage.parts.part import Part, inner
 from flexstage.parts.section import Rectangle
 from flexstage.parts.shape import Profiled, Shaped
-from flexstage.show.scene.facet import SHARP, Facet, Paint, circle, extrude, loft, pierce, rectangle
+from flexstage.show.scene.skin import ROUND, Skin, circle, extrude, face, join, loft, pierce, rectangle
+from flexstage.spatial.frame import Frame
 
 _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
 
@@ -51,15 +53,14 @@ def part_section(part: Part) -> tuple[float, float]:
     return first_value(end.height), first_value(end.width)
 
 
-def part_facets(part: Part, paint: Paint, marker: float, *, steps: int = 1) -> list[Facet]:
-    """Facets of a part in its link frame; a part without a shape of its own is a cube of edge `marker` [m].
+def part_skin(part: Part, marker: float, *, steps: int = 1) -> Skin:
+    """The skin of a part in its link frame; a part without a shape of its own is a cube of edge `marker` [m].
 
-    No ring of them is farther from the next one than the part's length over `steps`.
+    No ring of it is farther from the next one than the part's length over `steps`.
 
-    >>> from flexstage.show.scene.facet import Kind
     >>> from flexstage.parts.rod import Rod
-    >>> len(part_facets(Rod("steel", length=0.03, diameter=0.001), Paint(Kind.HINGE, ("a", "b")), 0.01))
-    14
+    >>> len(part_skin(Rod("steel", length=0.03, diameter=0.001), 0.01).triangles)
+    44
     """
     own = inner(part)
     if not isinstance(own, Shaped):
@@ -72,13 +73,12 @@ def part_facets(part: Part, paint: Paint, marker: float, *, steps: int = 1) -> l
     stations = np.array([station for station, _ in silhouette])
     rings = extrude(stations, [section.outline(angles) for _, section in silhouette])
     rings, shares = _more_rings(rings, (stations - stations[0]) / (stations[-1] - stations[0]), steps)
-    facets = loft(rings, paint, round_section=is_smooth, closed=False, shares=shares)
-    for (station, section), turn, share in ((silhouette[0], -1, 0.0), (silhouette[-1], 1, 1.0)):
-        for piece in section.pieces(angles):
-            count = len(piece)
-            face = np.column_stack([np.full(count, station), piece])[::turn]
-            facets.append(Facet(face, (SHARP,) * count, paint, np.full(count, share)))
-    return facets
+    ends = [
+        face(np.column_stack([np.full(len(piece), station), piece])[::turn], share)
+        for (station, section), turn, share in ((silhouette[0], -1, 0.0), (silhouette[-1], 1, 1.0))
+        for piece in section.pieces(angles)
+    ]
+    return join([loft(rings, along=ROUND if is_smooth else slice(None), closed=False, shares=shares), *ends])
 
 
 def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
@@ -99,26 +99,36 @@ def simplification(solid: Solid) -> str:
     return "without holes" if isinstance(solid, Pierced) else "as the box around it" if isinstance(solid, Imported) else ""
 
 
-def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
-    """Facets of an outline in its own frame: its centre at the origin, a cylinder's axis along x.
+def solid_skin(solid: Solid) -> Skin:
+    """The skin of an outline in its own frame: its centre at the origin, a cylinder's axis along x; of holes their edges alone.
 
-    >>> from flexstage.show.scene.facet import Kind
-    >>> len(solid_facets(Block("steel", (0.1, 0.1, 0.01)), Paint(Kind.BODY, ("a", "a"))))
-    6
+    >>> len(solid_skin(Block("steel", (0.1, 0.1, 0.01))).triangles)
+    12
     """
-    if isinstance(solid, Pierced):  # shown without its holes
-        return solid_facets(solid.solid, paint)
+    if isinstance(solid, Pierced):
+        holes = [solid_skin(hole).placed(first_frame(hole.frame)) for hole in solid.holes]
+        return join([solid_skin(solid.solid), *(replace(each, triangles=each.triangles[:0]) for each in holes)])
     if isinstance(solid, Imported):  # shown as the box around it
-        return _block(Block(solid.material, solid.size), paint)
-    return _SOLIDS[type(solid)](solid, paint)
+        return solid_skin(Block(solid.material, solid.size))
+    return _SOLIDS[type(solid)](solid)
 
 
-def _block(solid: Block, paint: Paint) -> list[Facet]:
+def first_frame(frame: Frame) -> Frame:
+    """The frame of the first design.
+
+    >>> from flexstage.spatial.frame import identity
+    >>> first_frame(identity()).position.tolist()
+    [0.0, 0.0, 0.0]
+    """
+    return Frame(first_design(np.real(frame.rotation), 2), first_design(np.real(frame.position), 1))
+
+
+def _block(solid: Block) -> Skin:
     size = [first_value(value) for value in solid.size]
     outer = _prism(rectangle(size[0], size[1]), size[2])
     if solid.hole is None:
-        return loft(outer, paint)
-    return pierce(outer, _prism(rectangle(first_value(solid.hole[0]), first_value(solid.hole[1])), size[2]), paint)
+        return loft(outer)
+    return pierce(outer, _prism(rectangle(first_value(solid.hole[0]), first_value(solid.hole[1])), size[2]))
 
 
 def _prism(section: Array, height: float) -> Array:
@@ -126,35 +136,28 @@ def _prism(section: Array, height: float) -> Array:
     return np.stack([np.column_stack([section, np.full(len(section), level)]) for level in (-0.5 * height, 0.5 * height)])
 
 
-def _cylinder(solid: Cylinder, paint: Paint) -> list[Facet]:
+def _cylinder(solid: Cylinder) -> Skin:
     ends = 0.5 * first_value(solid.length) * np.array([-1.0, 1.0])
     outer = extrude(ends, [circle(first_value(solid.diameter), 24)] * 2)
     if solid.bore is None:
-        return loft(outer, paint, round_section=True)
-    core = extrude(ends, [circle(first_value(solid.bore), 24)] * 2)
-    return pierce(outer, core, paint, round_section=True)
+        return loft(outer, along=ROUND)
+    return pierce(outer, extrude(ends, [circle(first_value(solid.bore), 24)] * 2), along=ROUND)
 
 
-def _extrusion(solid: Extrusion, paint: Paint) -> list[Facet]:
+def _extrusion(solid: Extrusion) -> Skin:
     corners = first_design(np.real(solid.corners), 2)
-    bottom, top = _prism(corners, first_value(solid.height))
-    facets = loft(np.stack([bottom, top]), paint, closed=False)
-    for trio in triangles(corners):
-        for ring, turn in ((top, trio), (bottom, trio[::-1])):
-            ends = zip(turn, (*turn[1:], turn[0]), strict=True)
-            edges = tuple(SHARP if abs(after - here) in (1, len(corners) - 1) else None for here, after in ends)
-            facets.append(Facet(ring[list(turn)], edges, paint, np.zeros(3)))
-    return facets
+    sides, trios = loft(_prism(corners, first_value(solid.height)), closed=False), np.array(triangles(corners))
+    return replace(sides, triangles=np.concatenate([sides.triangles, trios + len(corners), trios[:, ::-1]]))
 
 
-def _sphere(solid: Sphere, paint: Paint) -> list[Facet]:
+def _sphere(solid: Sphere) -> Skin:
     radius = 0.5 * first_value(solid.diameter)
     angles = np.linspace(0.0, np.pi, 13)[1:-1]
     rings = extrude(-radius * np.cos(angles), [circle(2.0 * radius * float(np.sin(angle)), 24) for angle in angles])
-    return loft(rings, paint, round_section=True)
+    return loft(rings, ringed=(), along=ROUND)
 
 
-_SOLIDS: Mapping[type[Solid], Callable[[Any, Paint], list[Facet]]] = {
+_SOLIDS: Mapping[type[Solid], Callable[[Any], Skin]] = {
     Block: _block,
     Cylinder: _cylinder,
     Extrusion: _extrusion,

@@ -1,26 +1,20 @@
-"""Views: parallel projection of a scene from a direction, and its drawing on matplotlib axes."""
+"""Views: parallel projection of a stage from a direction, its image on matplotlib axes, and what is written over it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Container, Sequence
+from dataclasses import dataclass
 from enum import Enum
-from functools import cache, lru_cache
-from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
-from flexstage.show.scene.facet import SHARP, Facet, Kind
-from flexstage.show.scene.hidden import are_visible
-from flexstage.show.scene.order import sort_by_depth
-from flexstage.show.scene.silhouette import silhouettes
-from flexstage.show.scene.stage import Label, Scene
-
-if TYPE_CHECKING:
-    from flexstage.show.figures.scenery import Stroke, Style
+from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER, canvas
+from flexstage.show.scene.raster import nearest, normals, visible_lines
+from flexstage.show.scene.skin import Kind
+from flexstage.show.scene.stage import Label
+from flexstage.show.viewer.data import StageData
 
 _COLOURS = {
     Kind.PLATFORM: ("#6ea8d8", 0.42),
@@ -39,9 +33,11 @@ NAMES = {
     Kind.GROUND: "ground",
 }
 _LABEL_COLOURS = {Kind.DRIVE: DRIVE, Kind.GAUGE: GAUGE}
-_SHADES = 9
-_ARROW = {"arrowstyle": "-|>", "color": MUTED, "lw": 0.8, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
+_EDGE = "#323e4b"
 _LIGHT = np.array([-0.35, 0.55, 0.76])
+"""Towards a light above the viewer's left shoulder: right, up, towards the viewer."""
+_DOTS = 200.0
+"""Pixels of an image in an inch: twice those of a screen."""
 
 
 class Side(Enum):
@@ -64,7 +60,6 @@ class View:
         return 1e3 * points @ self.axes[:2].T
 
 
-@cache
 def view(side: Side) -> View:
     """The view from a side.
 
@@ -72,176 +67,160 @@ def view(side: Side) -> View:
     [1.0, 2.0]
     """
     eye, up = (np.array(direction) for direction in side.value)
-    eye = eye / np.sqrt(eye @ eye)
+    eye = eye / np.linalg.norm(eye)
     right = np.cross(up, eye)
-    right = right / np.sqrt(right @ right)
+    right = right / np.linalg.norm(right)
     return View(np.stack([right, np.cross(eye, right), eye]))
 
 
-@lru_cache(maxsize=len(Side))
-def order_facets(scene: Scene, seen: View) -> list[Facet]:
-    """The facets that face the viewer, from the farthest to the nearest; of a large scene its silhouettes.
+def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, tallest: float = 1.1, below: float = 0.0) -> Any:
+    """Axes in mm without a frame that fill a new figure of that `width` [inch], in which points (n, 3) [m] have room.
 
-    >>> from flexstage.mechanism.mechanism import Mechanism
-    >>> from flexstage.show.scene.stage import scene
-    >>> order_facets(scene(Mechanism("")), view(Side.TOP))
-    []
+    `gap` is the room around them, a share of the larger extent; `tallest` the largest height over the width; `below` [inch] is left free.
+
+    >>> picture_axes(np.zeros((1, 3)), view(Side.TOP), 2.0).viewLim.intervalx.tolist()
+    [-1.0, 1.0]
     """
-    if scene.is_large:
-        return rejoin(silhouettes(scene.facets, seen.axes), seen)
-    ordered = list(sort_by_depth(scene.order, seen.axes[2]))
-    towards = np.array([facet.normal for facet in ordered]).reshape(-1, 3) @ seen.axes[2] > 1e-6
-    return rejoin([facet for facet, faces in zip(ordered, towards.tolist(), strict=True) if faces or len(facet.points) == 2], seen)
+    flat = seen.project(points) if len(points) else np.zeros((1, 2))
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    room = gap * float(max(high - low)) or 1.0
+    across, up = high - low + 2.0 * room
+    height = below + width * min(tallest, up / across)
+    return fit(canvas(width, height).add_axes((0.0, below / height, 1.0, 1.0 - below / height)), low - room, high + room)
 
 
-def rejoin(facets: list[Facet], seen: View) -> list[Facet]:
-    """The facets with translucent ones made whole again and drawn last, where nothing opaque stands before them: pieces show their seams.
+def fit(axes: Any, low: Array, high: Array) -> Any:
+    """The axes without a frame, one scale both ways, around a box from `low` to `high` (2,) [mm].
 
-    >>> rejoin([], view(Side.TOP))
-    []
+    >>> fit(canvas(2.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0])).viewLim.intervalx.tolist()
+    [-0.5, 1.5]
     """
-    wholes = {id(facet.whole or facet): facet.whole or facet for facet in facets if _is_translucent(facet)}
-    opaque = [facet for facet in facets if not _is_translucent(facet)]
-    if not wholes or not opaque:
-        return facets
-    points = np.concatenate([facet.points for facet in opaque])
-    starts = np.cumsum([0, *(len(facet.points) for facet in opaque)])[:-1]
-    flat = seen.project(points)
-    low, high = np.minimum.reduceat(flat, starts, axis=0), np.maximum.reduceat(flat, starts, axis=0)
-    free = {key for key, whole in wholes.items() if not np.any(_are_in_front(whole, points, starts) & _is_box_met(whole, low, high, seen))}
-    return [facet for facet in facets if id(facet.whole or facet) not in free] + [wholes[key] for key in wholes if key in free]
+    half = 0.5 * _paper(axes) * np.max((high - low) / _paper(axes))
+    (left, bottom), (right, top) = 0.5 * (low + high) - half, 0.5 * (low + high) + half
+    axes.set(xlim=(left, right), ylim=(bottom, top))
+    axes.set_axis_off()
+    return axes
 
 
-def _is_translucent(facet: Facet) -> bool:
-    return _COLOURS[facet.paint.kind][1] < 1.0
+def _paper(axes: Any) -> Array:
+    """Size of axes on paper [pt]."""
+    return 72.0 * axes.get_figure().get_size_inches() * axes.get_position(original=True).size
 
 
-def _are_in_front(whole: Facet, points: Array, starts: Array) -> Array:
-    """Which of the facets whose points start at `starts` reach before a facet's plane."""
-    return np.maximum.reduceat((points - whole.points[0]) @ whole.normal, starts) > 1e-5
+def _per_point(axes: Any) -> float:
+    """Length per point of paper, both ways alike."""
+    return float(np.max(axes.viewLim.size / _paper(axes)))
 
 
-def _is_box_met(whole: Facet, low: Array, high: Array, seen: View) -> Array:
-    """Which boxes in the picture, from `low` to `high` (n, 2), meet the one around a facet; all meet a line."""
-    own = seen.project(whole.points)
-    return np.all((high > own.min(axis=0)) & (low < own.max(axis=0)), axis=1) | (len(own) < 3)
+def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]]:
+    """Points (n, 3) [m] in pixels of an image of the axes, to the right, down and towards the viewer; and how many rows and columns it has.
+
+    >>> axes = fit(canvas(1.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0]))
+    >>> pixels(axes, np.array([[1e-3, 0.0, 0.0]]), view(Side.TOP))
+    (array([[200., 200.,   0.]]), (200, 200))
+    """
+    corner, scale = np.array([axes.viewLim.x0, axes.viewLim.y1, 0.0]), _DOTS / 72.0
+    width, height = np.ceil(scale * _paper(axes)).astype(int).tolist()
+    return (1e3 * points @ seen.axes.T - corner) * np.array([1.0, -1.0, 1.0]) * scale / _per_point(axes), (height, width)
 
 
-def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
-    """Draw facets in their order on matplotlib axes, in mm; those that others hide are left out.
+def show_image(axes: Any, image: Array) -> None:
+    """Show an image (h, w, 4) of as many pixels as `pixels` says on all of the axes: red, green, blue, opacity up to 255."""
+    extent = (*axes.get_xlim(), *axes.get_ylim())
+    axes.imshow(image, extent=extent, interpolation="none", aspect="auto")
+
+
+def draw(axes: Any, data: StageData, seen: View, points: Array | None = None, kinds: Container[Kind] = tuple(Kind)) -> None:
+    """Draw what is of these kinds as an image on axes of `fit`, its vertices at `points` (n, 3) [m] if they are given.
 
     The platform is translucent, so that what is under it shows.
-
-    >>> from flexstage.show.figures.style import canvas
-    >>> axes = canvas(1.0, 1.0).add_subplot()
-    >>> draw(axes, [], view(Side.TOP))
-    >>> len(axes.artists)
-    0
     """
-    from flexstage.show.figures.scenery import Scenery  # loads matplotlib
+    from matplotlib.colors import to_rgba
 
-    flats, edges, tones = _flats(facets, seen), _edges(facets, seen), _tones(facets, seen)
-    shows = are_visible(flats, [not _is_translucent(facet) for facet in facets])
-    drawn = (each for each, shown in zip(zip(facets, flats, edges, tones, strict=True), shows, strict=True) if shown)
-    strokes = [stroke for facet, flat, ends, tone in drawn for stroke in _strokes(facet.paint.kind, flat, ends, tone)]
-    if strokes:
-        axes.add_artist(Scenery(strokes))
-
-
-def _strokes(kind: Kind, flat: Array, ends: list[tuple[int, int]], tone: int) -> Iterator[Stroke]:
-    """A facet's area and its drawn edges; where all of an opaque one are drawn they are the area's own."""
-    from flexstage.show.figures.scenery import Stroke
-
-    closed = len(ends) == len(flat) > 2 and _COLOURS[kind][1] == 1.0
-    if len(flat) > 2:
-        yield Stroke(flat, _fill_style(kind, tone, edged=closed))
-    if ends and not closed:
-        yield Stroke(flat, _line_style(), ends)
-
-
-def _flats(facets: Sequence[Facet], seen: View) -> list[Array]:
-    """Every facet's points in the picture (n, 2)."""
-    flat = seen.project(np.concatenate([facet.points for facet in facets] or [np.zeros((0, 3))]))
-    return [flat[start:stop] for start, stop in pairwise(accumulate((len(facet.points) for facet in facets), initial=0))]
+    mesh = data.mesh
+    places, shape = pixels(axes, mesh.points if points is None else points, seen)
+    paints = np.array([to_rgba(*_COLOURS[thing.kind]) if thing.kind in kinds else (0.0,) * 4 for thing in data.things]).reshape(-1, 4)
+    image, depth = np.zeros((*shape, 4), dtype=np.uint8), np.full(shape, -np.inf, dtype=np.float32)
+    for layer in (paints[:, 3] == 1.0, (paints[:, 3] > 0.0) & (paints[:, 3] < 1.0)):
+        faces, edges = (ends[layer[mesh.part[ends[:, 0]]]] for ends in (mesh.triangles, mesh.edges))
+        normal = normals(places[faces])
+        faces, normal = faces[normal[:, 2] > 1e-6], normal[normal[:, 2] > 1e-6]
+        found, own = nearest(places[faces], shape)
+        nearer = own > depth
+        depth = np.maximum(depth, own)
+        parts = np.append(mesh.part[faces[:, 0]], -1)
+        colours = paints[parts[:-1]] * np.column_stack([_tones(normal)] * 3 + [np.ones(len(faces))])
+        image[nearer] = _over((255.0 * colours).astype(np.float32)[found[nearer]], image[nearer])
+        part = np.where(nearer, parts[found], -1)
+        image[_lines(part, visible_lines(places[edges], depth))] = np.multiply(255, to_rgba(_EDGE))
+    show_image(axes, image)
 
 
-def _edges(facets: Sequence[Facet], seen: View) -> list[list[tuple[int, int]]]:
-    """The drawn edges of every facet, between which of its points."""
-    edges = [SHARP if edge is None else edge for facet in facets for edge in facet.edges]
-    away = iter((np.array(edges).reshape(-1, 3) @ seen.axes[2] <= 0.0).tolist())
-    return [
-        [(index, (index + 1) % len(facet.edges)) for index, edge in enumerate(facet.edges) if next(away) and edge is not None]
-        for facet in facets
-    ]
+def _over(colours: Array, ground: Array) -> Array:
+    """Colours (n, 4) up to 255 over a ground that is opaque or empty."""
+    share = np.where(ground[:, 3:] > 0, colours[:, 3:] / 255.0, 1.0)
+    return np.column_stack([share * colours[:, :3] + (1.0 - share) * ground[:, :3], np.maximum(colours[:, 3], ground[:, 3])])
 
 
-def _tones(facets: Sequence[Facet], seen: View) -> list[int]:
-    """How light each facet is: less the more it turns away from a light above the viewer's left shoulder."""
-    turned = np.array([facet.normal for facet in facets]).reshape(-1, 3) @ (_LIGHT @ seen.axes)
-    return np.rint((0.62 + 0.38 * np.maximum(0.0, turned)) * _SHADES).astype(int).tolist()
+def _lines(part: Array, edges: Array) -> Array:
+    """The pixels (h, w) of edges, and those where one part ends and the next begins."""
+    drawn = edges.copy()
+    drawn[:, :-1] |= part[:, :-1] != part[:, 1:]
+    drawn[:-1] |= part[:-1] != part[1:]
+    return drawn
 
 
-@cache
-def _fill_style(kind: Kind, tone: int, *, edged: bool) -> Style:
-    """The kind's colour in a tone; opaque areas whose edges are not drawn have an edge of their own colour, or seams show."""
-    from flexstage.show.figures.scenery import Style, channels
-
-    colour, alpha = _COLOURS[kind]
-    fill = (*(round(channel * tone / _SHADES, 3) for channel in channels(colour)[:3]), alpha)
-    if edged:
-        return replace(_line_style(), fill=fill)
-    return Style(fill, fill, 0.45) if alpha == 1.0 else Style(fill)
+def _tones(normal: Array) -> Array:
+    """How light faces are by their normals (t, 3): less the more they turn away from the light."""
+    return 0.62 + 0.38 * np.maximum(0.0, normal @ _LIGHT)
 
 
-@cache
-def _line_style(colour: str = INK, width: float = 0.4, *, dashed: bool = False) -> Style:
-    from flexstage.show.figures.scenery import DASHES, Style, channels
+def edges_of(data: StageData, seen: View, kind: Kind) -> Array:
+    """A line through the sharp edges of a kind's solids (3 e, 2) [mm], broken after each.
 
-    return Style(edge=channels(colour), width=width, dashes=DASHES if dashed else ())
-
-
-def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
-    """Draw the edges of facets only, as thin lines.
-
-    >>> from flexstage.show.figures.style import canvas
-    >>> outline(canvas(1.0, 1.0).add_subplot(), [], view(Side.TOP))
+    >>> from flexstage.cases.registry import case
+    >>> from flexstage.show.viewer.data import still_data
+    >>> edges_of(still_data(case("parallelogram")), view(Side.TOP), Kind.PLATFORM).shape
+    (36, 2)
     """
-    from flexstage.show.figures.scenery import Scenery, Stroke
-
-    style = _line_style(MUTED, 0.5, dashed=True)
-    lines = [Stroke(flat, style, ends) for flat, ends in zip(_flats(facets, seen), _edges(facets, seen), strict=True) if ends]
-    if lines:
-        axes.add_artist(Scenery(lines))
+    mesh = data.mesh
+    edges = mesh.edges[np.isin(mesh.part[mesh.edges[:, 0]], solid_parts(data, kind))]
+    return np.pad(seen.project(mesh.points[edges]), ((0, 0), (0, 1), (0, 0)), constant_values=np.nan).reshape(-1, 2)
 
 
-def write(axes: Any, labels: tuple[Label, ...], seen: View, per_point: float | None = None) -> None:
+def solid_parts(data: StageData, kind: Kind) -> list[int]:
+    """The numbers of the parts of a kind that are more than lines.
+
+    >>> from flexstage.cases.registry import case
+    >>> from flexstage.show.viewer.data import still_data
+    >>> len(solid_parts(still_data(case("parallelogram")), Kind.PLATFORM))
+    1
+    """
+    return [part for part in np.unique(data.mesh.part[data.mesh.triangles[:, 0]]).tolist() if data.things[part].kind is kind]
+
+
+def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
     """Write names beside their points, moved apart where they would cover one another.
 
-    `per_point` is the length in the picture per point of paper, where it is known.
-
-    >>> from flexstage.show.figures.style import canvas
     >>> axes = canvas(1.0, 1.0).add_subplot()
     >>> write(axes, (Label("B1", (0.0, 0.0, 0.0), Kind.DRIVE),), view(Side.TOP))
     >>> axes.texts[0].get_text()
     'B1'
     """
     sizes = np.array([(_LETTER * len(label.text) + _ROUND, _LINE) for label in labels]).reshape(-1, 2)
-    places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), (per_point or _per_point(axes)) * sizes)
+    places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), _per_point(axes) * sizes)
+    for label, place in zip(labels, places, strict=True):
+        name(axes, place, label.text, _LABEL_COLOURS.get(label.kind, INK))
+
+
+def name(axes: Any, place: Array, text: str, colour: str) -> None:
+    """Write a name at a place (2,), on a lighter ground."""
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
-    for label, (x, y) in zip(labels, places, strict=True):
-        colour = _LABEL_COLOURS.get(label.kind, INK)
-        axes.text(x, y, label.text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box)
+    axes.text(*place, text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box if text else None)
 
 
 _LETTER, _ROUND, _LINE = 5.0, 4.0, 11.5
 """Width of a letter of a name, what its box adds, and the box's height [pt]."""
-
-
-def _per_point(axes: Any) -> float:
-    """Length per point of paper, both ways alike."""
-    low, high = axes.viewLim.min, axes.viewLim.max
-    paper = 72.0 * axes.get_figure().get_size_inches() * axes.get_position(original=True).size
-    return float(np.max((high - low) / paper))
 
 
 def _spread(places: Array, sizes: Array) -> Array:
@@ -262,30 +241,45 @@ def _spread(places: Array, sizes: Array) -> Array:
 def triad(axes: Any, seen: View) -> None:
     """The stage's axes as a small sign in the lower left corner.
 
-    >>> from flexstage.show.figures.style import canvas
     >>> axes = canvas(1.0, 1.0).add_subplot()
     >>> triad(axes, view(Side.TOP))
-    >>> [text.get_text() for text in axes.texts if text.get_text()]
+    >>> [text.get_text() for text in axes.texts]
     ['x', 'y']
     """
-    (left, right), bottom = axes.get_xlim(), axes.get_ylim()[0]
-    length = 0.05 * (right - left)
-    start = np.array([left, bottom]) + 0.5 * length + np.clip(-1.2 * length * seen.axes[:2], 0.0, None).max(axis=1)
-    for name, direction in zip("xyz", seen.axes[:2].T, strict=True):
-        if direction @ direction < 0.02:
-            continue
-        tip = start + length * direction
-        axes.annotate("", xy=tuple(tip), xytext=tuple(start), arrowprops=_ARROW)
-        axes.text(*(start + 1.3 * length * direction), name, ha="center", va="center", fontsize=6.5, color=MUTED, style="italic")
+    length = 0.05 * axes.viewLim.width
+    start = axes.viewLim.min + 0.5 * length + np.clip(-1.2 * length * seen.axes[:2], 0.0, None).max(axis=1)
+    shown = {axis: length * direction for axis, direction in zip("xyz", seen.axes[:2].T, strict=True) if direction @ direction > 0.02}
+    arrows(axes, [start] * len(shown), list(shown.values()), MUTED, 0.8)
+    for axis, reach in shown.items():
+        axes.text(*(start + 1.3 * reach), axis, ha="center", va="center", fontsize=6.5, color=MUTED, style="italic")
 
 
-def legend(scene: Scene) -> tuple[tuple[str, str], ...]:
-    """Colours and names of the kinds a scene shows.
+def arrows(axes: Any, starts: Sequence[Array], reaches: Sequence[Array], colour: str, width: float) -> None:
+    """Arrows from points by so much; `width` of their shafts in points."""
+    (x, y), (across, up) = np.transpose(starts), np.transpose(reaches)
+    axes.quiver(
+        x,
+        y,
+        across,
+        up,
+        angles="xy",
+        scale_units="xy",
+        scale=1.0,
+        units="inches",
+        width=width / 72.0,
+        color=colour,
+        headwidth=4.5,
+        zorder=3,
+    )
 
-    >>> from flexstage.mechanism.mechanism import Mechanism
-    >>> from flexstage.show.scene.stage import scene
-    >>> legend(scene(Mechanism("")))
-    ()
+
+def legend(data: StageData) -> tuple[tuple[str, str], ...]:
+    """Colours and names of the kinds a stage shows.
+
+    >>> from flexstage.cases.registry import case
+    >>> from flexstage.show.viewer.data import still_data
+    >>> [name for _, name in legend(still_data(case("parallelogram")))]
+    ['platform', 'bodies', 'hinges', 'actuators', 'gauges', 'ground']
     """
-    shown = {facet.paint.kind for facet in scene.facets}
-    return tuple((_COLOURS[kind][0], name) for kind, name in NAMES.items() if kind in shown)
+    shown = {thing.kind for thing in data.things}
+    return tuple((_COLOURS[kind][0], words) for kind, words in NAMES.items() if kind in shown)

@@ -8,8 +8,6 @@ import numpy as np
 
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
-from flexstage.models.linear.kinematics import Kinematics
-from flexstage.models.linear.model import LinearModel
 from flexstage.show.display import number, percent
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
@@ -18,11 +16,11 @@ from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import THIRD
 from flexstage.show.page import Abreast, Folded, Picture, Prose, Section, section
 from flexstage.show.scene.pictures import mode_picture
-from flexstage.show.scene.stage import Scene
 from flexstage.show.table import first_design
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.response import response_table
-from flexstage.show.viewer.motions import body_twists
+from flexstage.show.viewer.data import StageData
+from flexstage.show.viewer.motions import Group
 
 _SHAPES = 6
 _LEAST, _NAMED = 0.01, 4
@@ -32,17 +30,17 @@ SHAPES = (
 )
 
 
-def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
+def mode_section(analysis: Analysis, data: StageData) -> Section | None:
     """Modes with pictures of the platform's shapes; `None` for the ideal model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.show.scene.stage import scene
+    >>> from flexstage.show.viewer.data import still_data
     >>> from flexstage.analysis.complete import Model, analyse
-    >>> mode_section(analyse(double_triangle(), Model.IDEAL), scene(double_triangle())) is None
+    >>> mode_section(analyse(double_triangle(), Model.IDEAL), still_data(double_triangle())) is None
     True
     """
-    modes, model = analysis.modes, analysis.felt
-    if modes is None or model is None or not modes.names:
+    modes = analysis.modes
+    if modes is None or not modes.names:
         return None
     text = (
         "Undamped modes, strokes held. A mode is the platform's if the platform has a large share of the kinetic energy; modes of single "
@@ -53,19 +51,18 @@ def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
     if analysis.second_order is not None:
         text = f"{text} {analysis.second_order.text}"
     spectrum = to_svg(spectrum_figure(modes), "spectrum", "Modes over frequency and the platform's share of each")
-    shapes = tuple(_shapes(modes, model, analysis.kinematics, seen))
+    shapes = tuple(_shapes(modes, data))
     gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []
     return section("Modes", [Prose(text), mode_table(modes), Picture(spectrum), *gallery])
 
 
-def _shapes(modes: Modes, model: LinearModel, kinematics: Kinematics, seen: Scene) -> Iterator[Picture]:
-    frequencies, shapes = first_design(modes.frequencies, 1), first_design(modes.shapes, 2)
+def _shapes(modes: Modes, data: StageData) -> Iterator[Picture]:
+    frequencies, motions = first_design(modes.frequencies, 1), {each.name: each for each in data.motions if each.group is Group.MODE}
     for index in modes.platform[:_SHAPES]:
-        twists = body_twists(model, kinematics, shapes[:, index], tuple(seen.references))
-        picture = mode_picture(seen, twists, width=THIRD)
-        if picture is not None:
+        figure = mode_picture(data, motions[str(index + 1)], width=THIRD)
+        if figure is not None:
             caption = f"{index + 1}: {modes.names[index]}, {number(float(frequencies[index]))} Hz; kinetic energy: {_shares(modes, index)}"
-            yield Picture(picture.svg(f"mode{index + 1}", caption), caption, f"mode {index + 1}")
+            yield Picture(to_svg(figure, f"mode{index + 1}", caption), caption, f"mode {index + 1}")
 
 
 def _shares(modes: Modes, index: int) -> str:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Abreast, Joined, Legend, Picture, Prose, Section, Viewer, fold, section
-from flexstage.show.plan import plan_picture, rings
+from flexstage.show.plan import plan_figure, rings
 from flexstage.show.scene.pictures import stage_picture
-from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.scene.view import Side, legend
 from flexstage.show.tables.description import composition_table, link_table
 from flexstage.show.viewer.data import StageData
 from flexstage.show.viewer.motions import PLATFORM_MODE, Group, Motion
 
 _WIDTH = 4.4
-_LARGE = "So many parts are drawn by their convex outlines as seen, each before those whose middles lie farther away."
 _SIDES = (
     (Side.TOP, "top", "From above."),
     (Side.FRONT, "front", "From the front, along +y."),
@@ -23,31 +22,20 @@ _SIDES = (
 )
 
 
-def stage_section(seen: Scene, *, motion: str = "", ghost: str = "", said: str = "") -> Section | None:
-    """The stage as it is seen first, from its scene: the page's data "stage", beginning with `motion`, and those called `ghost` behind it.
+def stage_section(data: StageData, *, motion: str | None = None, ghost: str = "", said: str = "") -> Section | None:
+    """The stage as it is seen first: the page's data "stage", and those called `ghost` behind it.
 
-    `said` is what stands below it.
+    It begins with a `motion`, its first one if none is given; `said` is what stands below it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.show.scene.stage import scene
-    >>> stage_section(scene(double_triangle())).title
+    >>> from flexstage.show.viewer.data import still_data
+    >>> stage_section(still_data(double_triangle())).title
     'The stage'
     """
-    corner = stage_picture(seen).svg("corner", "The stage from above its front corner")
     caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
-    viewer = Viewer("stage", (Picture(corner, f"{caption} {_LARGE}" if seen.is_large else caption),), motion, ghost)
-    return section("The stage", [viewer, Legend(legend(seen)), Prose(said) if said else None])
-
-
-def turning_section(mechanism: Mechanism, data: StageData) -> Section | None:
-    """The stage as it is seen first, beginning with its first motion; `data` are the page's "stage".
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.show.viewer.data import stage_data
-    >>> turning_section(double_triangle(), stage_data(double_triangle())).title
-    'The stage'
-    """
-    return stage_section(scene(mechanism), motion=first_motion(data))
+    picture = Picture(to_svg(stage_picture(data), "corner", "The stage from above its front corner"), caption)
+    viewer = Viewer("stage", (picture,), first_motion(data) if motion is None else motion, ghost)
+    return section("The stage", [viewer, Legend(legend(data)), Prose(said) if said else None])
 
 
 def platform_modes(data: StageData) -> tuple[Motion, ...]:
@@ -85,30 +73,28 @@ def first_motion(data: StageData) -> str:
     return f"{ranked[0].group.value} {ranked[0].name}" if ranked else ""
 
 
-def drawing_section(mechanism: Mechanism, seen: Scene) -> Section | None:
-    """The stage from three sides, its plan, and what it consists of; `seen` is its scene.
+def drawing_section(mechanism: Mechanism, data: StageData) -> Section | None:
+    """The stage from three sides, its plan, and what it consists of.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.show.scene.stage import scene
-    >>> drawing_section(double_triangle(), scene(double_triangle())).title
+    >>> from flexstage.show.viewer.data import still_data
+    >>> drawing_section(double_triangle(), still_data(double_triangle())).title
     'Drawings and composition'
     """
-    sides = tuple(_side(seen, *each) for each in _SIDES)
-    plan = plan_picture(mechanism, seen).svg("plan", "Dimensioned plan of the stage")
-    plan_caption = " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism), *([_LARGE] if seen.is_large else [])])
+    first, *others = (
+        Picture(to_svg(stage_picture(data, side=side, width=_WIDTH, names=side is Side.TOP), name, caption), caption)
+        for side, name, caption in _SIDES
+    )
+    plan = to_svg(plan_figure(mechanism, data), "plan", "Dimensioned plan of the stage")
     return section(
         "Drawings and composition",
         [
-            Abreast((sides[0], Abreast(sides[1:]))),
-            Picture(plan, plan_caption),
+            Abreast((first, Abreast(tuple(others)))),
+            Picture(plan, " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism)])),
             composition_table(mechanism),
             fold("Links in the design file", link_table(mechanism)),
         ],
     )
-
-
-def _side(seen: Scene, side: Side, name: str, caption: str) -> Picture:
-    return Picture(stage_picture(seen, side=side, width=_WIDTH, names=side is Side.TOP).svg(name, caption), caption)
 
 
 def _ring_texts(mechanism: Mechanism) -> list[str]:

@@ -22,11 +22,11 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
-from flexstage.show.scene.facet import Kind
 from flexstage.show.scene.primitives import simplification
+from flexstage.show.scene.skin import Kind
 from flexstage.show.scene.stage import Label, Scene, scene
 from flexstage.show.viewer.bend import Bend, bend_of
-from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of, thing_kinds
+from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of
 from flexstage.show.viewer.motions import (
     Course,
     Curve,
@@ -157,11 +157,11 @@ def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
     assembly = expand(mechanism)
     steps = max(1, min(_STEPS, _PIECES // max(1, len(assembly.links))))
     seen = scene(mechanism, steps=steps)
-    bodies, kinds = body_names(assembly.bodies), thing_kinds(seen.facets)
+    bodies, shown = body_names(assembly.bodies), {piece.name: piece for piece in seen.pieces}
     describer = Describer(mechanism, assembly, line_numbers(text))
     numbers = {name: number for number, name in enumerate(bodies)}
-    things = tuple(describer.thing(name, kind, numbers[first], numbers[second]) for name, (kind, (first, second)) in kinds.items())
-    mesh = mesh_of(seen.facets, bodies, tuple(kinds), _bends(assembly), bend_of(None))
+    things = tuple(describer.thing(name, each.kind, *(numbers[body] for body in each.bodies)) for name, each in shown.items())
+    mesh = mesh_of(seen.pieces, numbers, {name: number for number, name in enumerate(shown)}, _bends(assembly), bend_of(None))
     low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
     size, middle = _size(seen, low, high), 0.5 * (low + high)
     coarse = f"{len(assembly.links)} links are drawn as bent in {steps} piece{'s' if steps > 1 else ''} each"

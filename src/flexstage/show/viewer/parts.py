@@ -13,8 +13,8 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.lines import line_of
 from flexstage.parts.part import inner
 from flexstage.show.display import field_unit, format_value, number, to_typography
-from flexstage.show.scene.facet import Kind
 from flexstage.show.scene.primitives import first_value
+from flexstage.show.scene.skin import Kind
 from flexstage.show.tables.description import kind_name
 
 _FOOT = " foot"

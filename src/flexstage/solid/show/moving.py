@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.scene.facet import Kind
+from flexstage.show.scene.skin import Kind
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.show.viewer.motions import Motion
 from flexstage.show.viewer.parts import Thing

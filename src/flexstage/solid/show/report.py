@@ -11,7 +11,7 @@ from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.page import Head, Headline, Section, page
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import turning_section
+from flexstage.show.sections.stage import stage_section
 from flexstage.show.viewer.data import stage_data
 from flexstage.show.viewer.motions import Motion
 
@@ -41,5 +41,5 @@ def solid_report(
     first, *rest = sections
     data = stage_data(mechanism)
     data = replace(data, motions=(*data.motions, *more))
-    shown = (turning_section(mechanism, data), first, caveat_section(mechanism, warnings), *rest)
-    return page(head, [each for each in shown if each is not None], {"stage": data})
+    shown = (stage_section(data), first, caveat_section(mechanism, warnings), *rest)
+    return page(head, shown, {"stage": data})

@@ -16,14 +16,14 @@ from flexstage.show.display import number
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Abreast, Block, Folded, Headline, Picture, Prose, Section, section
-from flexstage.show.scene.stage import scene
 from flexstage.show.sections.stage import joined_viewers
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import centre_table, direction_table, principal_table, stiffness_table
+from flexstage.show.viewer.data import still_data
 from flexstage.show.viewer.motions import Group, Motion, Skeleton, body_twists
 from flexstage.solid.results.stage import worst_strokes
 from flexstage.solid.results.surface import Surface, mode_surfaces, stress_surfaces
-from flexstage.solid.show.skin_figures import png_picture, skin_figure
+from flexstage.solid.show.skin_figures import skin_figure
 from flexstage.solid.show.tables import (
     block_table,
     command_table,
@@ -63,10 +63,8 @@ def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
         surfaces = _in_megapascals(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}))
-        picture = png_picture(
-            skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT),
-            f"The {name} unit at its full stroke, output guided: von Mises stress; motion magnified.",
-        )
+        caption = f"The {name} unit at its full stroke, output guided: von Mises stress; motion magnified."
+        picture = Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), f"unit-{name}", caption), caption)
         stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
         tables = (command_table(name, unit), *(() if stress is None else (stress,)))
         blocks += [Abreast((picture, *tables))] if stress is not None else list(tables)
@@ -114,14 +112,14 @@ def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
     for index in stage.modes.platform:
         figure = skin_figure(mode_surfaces(stage.read, stage.modes.shapes[:, index]), "")
         caption = f"{stage.modes.names[index]}, {stage.modes.frequencies[index]:.1f} Hz: displacement relative to the largest."
-        yield png_picture(figure, caption, dots_per_inch=100)
+        yield Picture(to_svg(figure, f"solid{index}", caption), caption)
 
 
 def _stress_picture(stage: SolidStage) -> Picture:
     assert stage.worst is not None  # noqa: S101  there is a worst corner wherever there is a stress
     surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
     caption = "Von Mises stress at the corner of the strokes that is worst for the weakest link, dead load included; motion magnified."
-    return png_picture(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), caption)
+    return Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), "stress", caption), caption)
 
 
 def verification_headline(found: Verification) -> Headline:
@@ -132,7 +130,7 @@ def verification_headline(found: Verification) -> Headline:
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
     """The platform's modes by finite elements as motions of a viewer, with the modes of theory they are paired with."""
-    return fea_motions(Skeleton(scene(mechanism).references), Moving(stage.modes, stage.read.model), theory)
+    return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 
 def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:

@@ -37,4 +37,4 @@ def hysteresis_report(test: StackTest) -> str:
     origin = (("record", named), ("model", "measured"), ("flexstage", __version__))
     width, error = (percent(each, 3) for each in (test.hysteresis.width, test.hysteresis.rms))
     said = Headline(f"Loops are {width} of the stroke wide; the model follows them to {error}, rms.")
-    return page(Head(named, "Hysteresis of a stack", origin, said), [each for each in sections if each is not None])
+    return page(Head(named, "Hysteresis of a stack", origin, said), sections)

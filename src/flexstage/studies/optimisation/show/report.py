@@ -9,15 +9,13 @@ import numpy as np
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
-from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Abreast, Head, Headline, Legend, Picture, Prose, Section, Viewer, page, section
 from flexstage.show.scene.pictures import stage_picture
-from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.scene.view import legend
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import first_motion, stage_section, turning_section
+from flexstage.show.sections.stage import first_motion, stage_section
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.studies.optimisation.result import Front, Optimum
 from flexstage.studies.optimisation.show.figures import convergence_figure, front_figure
@@ -45,29 +43,29 @@ def optimise_report(found: Optimum) -> str:
         {} if final is None else {"before": stage_data(study.design)}
     )
     sections: list[Section | None] = [
-        _stage(study, final, stages),
+        _stage(stages),
         section("Objective", [objective, search]),
         caveat_section(study.design, warnings),
         section("Variables", [variables]),
         section("Limits", [limits, *rest[:-1]]),
         section("Starts", rest[-1:]),
     ]
-    return page(_head(study, "An optimisation", _headline(found)), [each for each in sections if each is not None], stages)
+    return page(_head(study, "An optimisation", _headline(found)), sections, stages)
 
 
-def _stage(study: Study, final: Mechanism | None, stages: Mapping[str, StageData]) -> Section | None:
+def _stage(stages: Mapping[str, StageData]) -> Section | None:
     """The optimum, with the design as it stands behind it and, where nothing turns, beside it."""
-    if final is None:
-        return stage_section(scene(study.design), motion=first_motion(stages["stage"]))
-    drawn = {"as it stands": scene(study.design), "the optimum": scene(final)}
-    pictures = [_still(seen, f"stage{place}", f"The stage, {name}.") for place, (name, seen) in enumerate(drawn.items())]
+    if "before" not in stages:
+        return stage_section(stages["stage"])
+    drawn = {"as it stands": stages["before"], "the optimum": stages["stage"]}
+    pictures = [_still(each, f"stage{place}", f"The stage, {name}.") for place, (name, each) in enumerate(drawn.items())]
     viewer = Viewer("stage", (Abreast(tuple(pictures)),), first_motion(stages["stage"]), "before")
     said = "Drawn is the optimum; where it turns, the outline behind it is the design as it stands."
-    return section("The stage", [viewer, Legend(legend(drawn["the optimum"])), Prose(said)])
+    return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(said)])
 
 
-def _still(seen: Scene, name: str, caption: str) -> Picture:
-    return Picture(stage_picture(seen, width=4.4).svg(name, caption), caption)
+def _still(data: StageData, name: str, caption: str) -> Picture:
+    return Picture(to_svg(stage_picture(data, width=4.4), name, caption), caption)
 
 
 def front_report(found: Front) -> str:
@@ -75,12 +73,12 @@ def front_report(found: Front) -> str:
     picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
     data = stage_data(found.study.design)
     sections = [
-        turning_section(found.study.design, data),
+        stage_section(data),
         section("Front", [picture, *front_tables(found)]),
         caveat_section(found.study.design, loaded_findings(found.study)),
     ]
     said = Headline(f"{len(found.points)} designs, none of them better than another in both objectives.")
-    return page(_head(found.study, "A front of two objectives", said), [each for each in sections if each is not None], {"stage": data})
+    return page(_head(found.study, "A front of two objectives", said), sections, {"stage": data})
 
 
 def _headline(found: Optimum) -> Headline:

@@ -12,9 +12,8 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Block, Head, Headline, Picture, Section, page, section
-from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import first_motion, stage_section
+from flexstage.show.sections.stage import stage_section
 from flexstage.show.table import result_table
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.studies.sweeps.definition import Study
@@ -50,7 +49,7 @@ def sweep_report(sweep: Sweep) -> str:
     ]
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
     head = Head(study.name, "A sweep of designs", origin, _headline(study, results))
-    return page(head, [each for each in sections if each is not None], {key: each.data for key, each in stages.items()})
+    return page(head, sections, {key: each.data for key, each in stages.items()})
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +83,10 @@ def _extremes(study: Study, ends: dict[str, _End]) -> Section | None:
     """The stage, of which the page holds one or two designs."""
     first = ends["stage"]
     if "least" not in ends:
-        return stage_section(scene(first.design), motion=first_motion(first.data), said=first.said)
+        return stage_section(first.data, said=first.said)
     of = "Of the designs that keep the limits" if study.limits else "Of the designs"
     said = f"{of}, drawn is that with {first.said}; where it turns, the outline behind it is that with {ends['least'].said}."
-    return stage_section(scene(first.design), motion=first_motion(first.data), ghost="least", said=said)
+    return stage_section(first.data, ghost="least", said=said)
 
 
 def _headline(study: Study, results: Results) -> Headline:

@@ -10,7 +10,7 @@ from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Head, Headline, Picture, Section, page, section
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import platform_modes, turning_section
+from flexstage.show.sections.stage import platform_modes, stage_section
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.show.viewer.motions import Group, Motion
 from flexstage.studies.sweeps.loaded import loaded_findings
@@ -33,7 +33,7 @@ def tolerance_report(found: Toleranced) -> str:
     shares = Picture(to_svg(shares_figure(found), "shares", "shares of the variance"), _SHARES)
     data = _spread(found, stage_data(study.design))
     sections: list[Section | None] = [
-        turning_section(study.design, data),
+        stage_section(data),
         section("Yield", [yield_table(found), yields]),
         caveat_section(study.design, loaded_findings(study)),
         section("What scatters", [scatter_table(found)]),
@@ -44,7 +44,7 @@ def tolerance_report(found: Toleranced) -> str:
         section("Copies without values", [failure_table(found.results)] if found.results.failures else []),
     ]
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
-    return page(Head(study.name, "Tolerances", origin, _headline(found)), [each for each in sections if each is not None], {"stage": data})
+    return page(Head(study.name, "Tolerances", origin, _headline(found)), sections, {"stage": data})
 
 
 def _spread(found: Toleranced, data: StageData) -> StageData:
