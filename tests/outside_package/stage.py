@@ -1,6 +1,6 @@
 """The shipped parallelogram, with the tapered leaf, the interferometer and a line about the sag; it names the package they come from."""
 
-from flexstage.cases.registry import case
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.store import dumps
 
 LEAF = """kind = "leaf"
@@ -44,7 +44,7 @@ right = { joins = ["ground", "platform"], part = "leaf", at = ["25 mm", "27.5 mm
 
 def design():
     """Its design file."""
-    text = dumps(case("parallelogram")).replace('name = "parallelogram"\n', 'name = "parallelogram"\npackages = ["tapered-leaf >= 1"]\n')
+    text = dumps(parallelogram()).replace('name = "parallelogram"\n', 'name = "parallelogram"\npackages = ["tapered-leaf >= 1"]\n')
     before, _, after = text.partition("[sensors.probe]\n")
     assert LEAF in before
     assert LINE in after

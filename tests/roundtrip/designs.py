@@ -19,17 +19,14 @@ from flexstage.mechanism.grammar.node import (
     ChoiceNode,
     DirectionNode,
     FlagNode,
-    MatrixNode,
     NamedNode,
     Node,
     NumberNode,
-    RowNode,
     TextNode,
     VectorNode,
     WholeNode,
 )
 from flexstage.mechanism.mechanism import GaugeSum, Link, Mechanism, NamedNumber, Placement, Unit
-from flexstage.spatial.frame import COMPONENTS
 
 TEXT = """# A stage of one wire.
 format = "flexstage 1"   # always
@@ -84,8 +81,6 @@ def values(node: Node) -> st.SearchStrategy[Any]:
         return st.tuples(*(values(item) for item in node.items))
     if isinstance(node, DirectionNode):
         return DIRECTIONS
-    if isinstance(node, MatrixNode):
-        return st.tuples(*(st.tuples(*(values(RowNode(row).child(None, name)) for name in COMPONENTS)) for row in range(6)))
     if isinstance(node, (TextNode, FlagNode, WholeNode)):
         return {TextNode: TEXTS, FlagNode: st.booleans(), WholeNode: st.integers(1, 20)}[type(node)]
     if isinstance(node, ChoiceNode):

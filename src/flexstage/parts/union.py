@@ -264,16 +264,24 @@ def _moments(prisms: Sequence[_Prism]) -> Moments | None:
     long = [(each, place) for each, place in zip(prisms, at, strict=True) if each.corners is not None or each.radius is not None]
     low, high = -_least([each.half - place[..., 0] for each, place in long]), _least([place[..., 0] + each.half for each, place in long])
     polygons = [
-        (place[..., None, 1:] + each.corners @ np.swapaxes((turn @ each.frame.rotation)[..., 1:, 1:], -1, -2), each.is_rectangle)
+        (
+            _unstepped(place[..., None, 1:] + each.corners @ np.swapaxes((turn @ each.frame.rotation)[..., 1:, 1:], -1, -2)),
+            each.is_rectangle,
+        )
         for each, place in long
         if each.corners is not None
     ]
-    circles = [(place[..., 1:], each.radius) for each, place in long if each.radius is not None]
+    circles = [(_unstepped(place[..., 1:]), _unstepped(each.radius)) for each, place in long if each.radius is not None]
     if len(long) < len(prisms):
         found = _zone(prisms[-1].half, at[-1], (low, high), polygons, circles) if len(long) == len(prisms) - 1 else None
     else:
         found = _extruded(_section(polygons, circles), low, high)
     return None if found is None else found.within(base).times(float(np.prod([each.sign for each in prisms])))
+
+
+def _unstepped(value: Array) -> Array:
+    """A value as real numbers where none of it is stepped: its section is worked out several times faster."""
+    return value if np.any(np.imag(value)) else np.real(value)
 
 
 def _least(values: Sequence[Array]) -> Array:

@@ -28,7 +28,7 @@ from flexstage.base.number import Number, Table, freeze
 from flexstage.base.units.expression import parse_expression
 from flexstage.base.units.quantity import Quantity
 from flexstage.mechanism.addresses.locate import Place, canonical, link_path, locate
-from flexstage.mechanism.addresses.path import member, replace_member, with_mirror
+from flexstage.mechanism.addresses.path import follow, replace_member, with_mirror
 from flexstage.mechanism.assembly.expand import apply_overrides
 from flexstage.mechanism.assembly.misalignment import misalignment_of
 from flexstage.mechanism.grammar.formulas import NUMBERS, amount_of, dependents, formula_value, is_formula, scope_of, shown_unit
@@ -55,9 +55,7 @@ def get(mechanism: Mechanism, address: str) -> Any:
     elif place.owners:
         link, part = _link_and_part(mechanism, place)
         value = link if place.in_link else part
-    for name in place.path:
-        value = member(value, name)
-    return value
+    return follow(value, place.path)
 
 
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
@@ -227,18 +225,11 @@ def provenance(mechanism: Mechanism) -> Mapping[str, str]:
 
 
 def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
-    link = _link_of(mechanism, place.owners)
+    link = follow(mechanism, link_path(mechanism, place.owners[0]))
     try:
         return apply_overrides(mechanism, link, place.owners)
     except KeyError as error:
         raise refuse(f"override of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
-
-
-def _link_of(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
-    value: Any = mechanism
-    for step in link_path(mechanism, owners[0]):
-        value = member(value, step)
-    return value
 
 
 def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
@@ -277,10 +268,8 @@ def _origin(mechanism: Mechanism, place: Place) -> str:
                 return replace(place, owners=(owner,)).address
     if not place.owners or place.misaligned:
         return place.address
-    link = _link_of(mechanism, place.owners)
-    if not place.in_link:
-        return ".".join(("parts", link.part, *place.path))
-    return ".".join((*link_path(mechanism, place.owners[0]), *place.path))
+    home = link_path(mechanism, place.owners[0])
+    return ".".join((*(home if place.in_link else ("parts", follow(mechanism, home).part)), *place.path))
 
 
 def _tag(tags: Mapping[str, str], address: str) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.renamed import new_name
-from flexstage.mechanism.addresses.path import completions, has_member, member
+from flexstage.mechanism.addresses.path import completions, follow, has_member, member
 from flexstage.mechanism.assembly.expand import copy_names
 from flexstage.mechanism.assembly.likeness import ancestry, drawn_units, link_lineage
 from flexstage.mechanism.assembly.misalignment import MISALIGNED, Misalignment
@@ -130,7 +130,7 @@ def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, .
 
 def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: tuple[str, ...], steps: tuple[str, ...]) -> Place:
     """A place in the link at path `tree`: one of its own fields, or an override of its part."""
-    link = _at(mechanism, tree)
+    link = follow(mechanism, tree)
     if not steps or steps[0] in _TOPOLOGY:
         raise refuse(address, "what a link joins and its part are no overrides", "Address a value of the link or of its part")
     if has_member(link, steps[0]):
@@ -196,13 +196,6 @@ def _names(value: Any) -> list[str]:
     own = [field.name for field in fields(value) if field.name not in _DOCUMENT]
     nested = [getattr(value, name) for name in own]
     return own + [name for inner in nested if is_dataclass(inner) or hasattr(inner, "keys") for name in _names(inner)]
-
-
-def _at(mechanism: Mechanism, path: tuple[str, ...]) -> Any:
-    value: Any = mechanism
-    for name in path:
-        value = member(value, name)
-    return value
 
 
 def canonical(mechanism: Mechanism, address: str) -> str:

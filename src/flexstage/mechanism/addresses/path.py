@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
-from functools import cache
+from functools import cache, reduce
 from typing import Any
 
 from flexstage.base.number import Table
@@ -44,6 +44,15 @@ def member(value: Any, name: str) -> Any:
     if isinstance(value, tuple):
         return value[_index(name)]
     return getattr(value, _field_name(value, name))
+
+
+def follow(value: Any, path: Iterable[str]) -> Any:
+    """Return what a value holds at a full path.
+
+    >>> follow({"at": (1.0, 2.0)}, ("at", "y"))
+    2.0
+    """
+    return reduce(member, path, value)
 
 
 def has_member(value: Any, name: str) -> bool:
@@ -104,10 +113,7 @@ def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
     found = completions(value, path[0])
     if len(found) != 1:
         raise KeyError(path[0])
-    inner = value
-    for name in found[0]:
-        inner = member(inner, name)
-    return found[0] + complete(inner, path[1:])
+    return found[0] + complete(follow(value, found[0]), path[1:])
 
 
 def replace_member(value: Any, path: tuple[str, ...], new: Any) -> Any:

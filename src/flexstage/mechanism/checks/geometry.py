@@ -15,6 +15,7 @@ from flexstage.base.number import Array, Number, first_design, stack
 from flexstage.base.units.quantity import LENGTH, Quantity
 from flexstage.base.units.unit import show
 from flexstage.mechanism.addresses.locate import link_path, locate
+from flexstage.mechanism.addresses.path import follow
 from flexstage.mechanism.assembly.expand import NO_IMAGE, apply_overrides, placed_bodies
 from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.checks.value import first_failing
@@ -108,9 +109,7 @@ def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:
     """The parts as they are after the overrides, by the link or the copy that departs."""
     places = [locate(mechanism, key) for key in mechanism.overrides]
     for owners in dict.fromkeys(place.owners for place in places if not place.misaligned):
-        section, *inside = link_path(mechanism, owners[0])
-        link = mechanism.links[inside[0]] if section == "links" else mechanism.units[inside[0]].links[inside[2]]
-        yield owners[-1], apply_overrides(mechanism, link, owners)[1]
+        yield owners[-1], apply_overrides(mechanism, follow(mechanism, link_path(mechanism, owners[0])), owners)[1]
 
 
 def _part(where: str, part: Part) -> Iterator[Finding]:

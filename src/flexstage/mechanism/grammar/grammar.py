@@ -30,7 +30,6 @@ from flexstage.mechanism.grammar.node import (
     Definitions,
     DirectionNode,
     FlagNode,
-    MatrixNode,
     NamedNode,
     Node,
     NumberNode,
@@ -639,7 +638,7 @@ def _annotated_node(hint: Any) -> Node:
     if quantity is DIRECTION:
         return DirectionNode()
     if quantity in (COMPLIANCE_MATRIX, STIFFNESS_MATRIX):
-        return MatrixNode(COMPLIANCES if quantity is COMPLIANCE_MATRIX else STIFFNESSES)
+        return COMPLIANCES if quantity is COMPLIANCE_MATRIX else STIFFNESSES
     if typing.get_origin(inner) is tuple:
         return VectorNode((NumberNode(quantity, bound),) * len(typing.get_args(inner)))
     return NumberNode(quantity, bound)

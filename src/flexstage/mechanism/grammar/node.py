@@ -217,10 +217,11 @@ class Node:
 
 @dataclass(frozen=True)
 class NumberNode(Node):
-    """A number of a quantity, within a bound."""
+    """A number of a quantity, within a bound. `zero`: nought stands without its unit, as in a matrix."""
 
     quantity: Quantity
     bound: Bound | None = None
+    zero: bool = False
     single: ClassVar[bool] = True
 
     @property
@@ -244,6 +245,8 @@ class NumberNode(Node):
 
     def si(self, raw: Any, where: str) -> float:
         """The number in SI of what a file has; raises `DesignError` at `where` if that is none."""
+        if self.zero and is_bare(raw) and raw == 0:
+            return 0.0
         example = f'Write for example "{self.quantity.example}"'
         if isinstance(raw, str):
             return parse(raw, self.quantity, where=where)
@@ -258,6 +261,8 @@ class NumberNode(Node):
         require_single(value, where)
         if where in writer.formulas:
             return writer.formulas[where]
+        if self.zero and str(value) == "0.0":
+            return 0
         return value if self.quantity is RATIO else show(value, self.quantity)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -266,8 +271,9 @@ class NumberNode(Node):
         text = {"type": "string", "pattern": _WITH_UNIT}
         told = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
         texts = [text, {"type": "string", "pattern": _FORMULA}] if definitions.formulas else [text]
+        texts = [{"const": 0}, *texts] if self.zero else texts
         if self.quantity is not RATIO:
-            return ({"anyOf": texts} if definitions.formulas else text) | told
+            return ({"anyOf": texts} if len(texts) > 1 else text) | told
         return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | told | {"examples": [float(self.quantity.example)]}
 
     def wanted(self, value: Any) -> Wanted:
@@ -328,15 +334,15 @@ class NamedNode(Node):
 
 @dataclass(frozen=True)
 class VectorNode(Node):
-    """Numbers by component: x, y, z."""
+    """Numbers by component: x, y, z; or the rows of a matrix."""
 
-    items: tuple[NumberNode, ...]
+    items: tuple[Node, ...]
     components: ClassVar[bool] = True
 
     @property
-    def measures(self) -> Quantity:
+    def measures(self) -> Quantity | None:
         """The quantity of its first component."""
-        return self.items[0].quantity
+        return self.items[0].measures
 
     @property
     def example(self) -> str:
@@ -350,8 +356,8 @@ class VectorNode(Node):
         return every([reader.read(item, part, f"{where}.{name}") for name, item, part in zip(COMPONENTS, self.items, raw, strict=False)])
 
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """A text each."""
-        return [writer.write(item, part, f"{where}.{name}") for name, item, part in self.members(value)]
+        """The form of each."""
+        return [writer.write(item, part, f"{where}.{name}") for name, item, part in zip(COMPONENTS, self.items, value, strict=False)]
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """As many texts."""
@@ -437,111 +443,51 @@ class DirectionNode(Node):
         return _fit_row(value, None, where)
 
 
+def _rows(*quantities: Quantity) -> tuple[VectorNode, ...]:
+    """The rows of a 6x6 of quantities: of entries between translations, of mixed ones, between rotations."""
+    entries = [NumberNode(quantity, zero=True) for quantity in quantities]
+    return tuple(VectorNode(tuple(entries[(row > 2) + (column > 2)] for column in range(6))) for row in range(6))
+
+
 @dataclass(frozen=True)
-class Blocks:
-    """What the entries of a 6x6 are: its `name`, and the quantities of entries between translations, of mixed ones, between rotations."""
+class MatrixNode(VectorNode):
+    """A symmetric 6x6, of what is called `name`; files and overrides state the whole matrix or single entries.
+
+    >>> COMPLIANCES.child(None, "x").child(None, "rz").quantity.name, COMPLIANCES.child(None, "rx").child(None, "rx").quantity.name
+    ('coupling compliance', 'rotational compliance')
+    """
 
     name: str
-    quantities: tuple[Quantity, Quantity, Quantity]
 
-
-COMPLIANCES = Blocks("compliance", (COMPLIANCE, COUPLING, ROTATIONAL_COMPLIANCE))
-STIFFNESSES = Blocks("stiffness", (STIFFNESS, COUPLING_STIFFNESS, ROTATIONAL_STIFFNESS))
-
-
-@dataclass(frozen=True)
-class RowNode(Node):
-    """A row of a 6x6; files and overrides state the whole matrix or single entries."""
-
-    row: int
-    blocks: Blocks = COMPLIANCES
-    components: ClassVar[bool] = True
-
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The entries, of which zero stands without unit."""
-        if not isinstance(raw, list) or len(raw) != 6:
-            what = f"found {kind(raw)} where a row of six entries is expected"
-            return reader.refuse(where, what, f'Write entries such as "{self.blocks.quantities[0].example}", or 0')
-        return every(
-            [
-                0.0 if is_bare(part) and part == 0 else reader.read(self.child(raw, name), part, f"{where}.{name}")
-                for name, part in zip(COMPONENTS, raw, strict=True)
-            ]
-        )
-
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """The entries, of which zero stands without unit."""
-        return [
-            0
-            if part == 0.0 and str(part) == "0.0" and f"{where}.{name}" not in writer.formulas
-            else self.child(value, name).write(part, f"{where}.{name}", writer)
-            for name, part in zip(COMPONENTS, value, strict=True)
-        ]
-
-    def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """Six entries."""
-        return row_schema([{"oneOf": [{"const": 0}, self.child(None, name).schema(definitions)]} for name in COMPONENTS])
-
-    def wanted(self, value: Any) -> Wanted:
-        """A tuple of six numbers."""
-        fits = isinstance(value, tuple) and len(value) == 6 and all(_is_number(item) for item in value)
-        return None if fits else ("a row of six numbers", "Give a tuple of numbers or arrays in SI units")
-
-    def child(self, value: Any, name: str) -> NumberNode:
-        """An entry: its quantity follows from how many rotations it is about.
-
-        >>> RowNode(0).child(None, "rz").quantity.name, RowNode(3).child(None, "rx").quantity.name
-        ('coupling compliance', 'rotational compliance')
-        """
-        rotations = (self.row > 2) + (COMPONENTS.index(name) > 2)
-        return NumberNode(self.blocks.quantities[rotations])
-
-
-@dataclass(frozen=True)
-class MatrixNode(Node):
-    """A 6x6 compliance or stiffness."""
-
-    blocks: Blocks = COMPLIANCES
-    components: ClassVar[bool] = True
+    @property
+    def measures(self) -> None:
+        """Its entries are of several quantities."""
 
     @property
     def example(self) -> str:
         """A text as it may stand in a file."""
-        return f'[["{self.blocks.quantities[0].example}", 0, 0, 0, 0, 0], ...]'
-
-    def row(self, index: int) -> RowNode:
-        """The node of a row."""
-        return RowNode(index, self.blocks)
-
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Six rows."""
-        if not is_row(self, raw, 6, where, reader):
-            return BAD
-        return every([self.row(row).read(item, f"{where}.{COMPONENTS[row]}", reader) for row, item in enumerate(raw)])
-
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """Six rows."""
-        return [self.row(row).write(parts, f"{where}.{COMPONENTS[row]}", writer) for row, parts in enumerate(value)]
+        return f"[{self.items[0].example}, ...]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Six rows."""
-        rows = row_schema([self.row(row).schema(definitions) for row in range(6)])
-        return rows | {"description": f"6x6 {self.blocks.name} about the centre, rows x, y, z, rx, ry, rz; zero stands without unit"}
+        said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zero stands without unit"
+        return super().schema(definitions) | {"description": said}
 
     def wanted(self, value: Any) -> Wanted:
         """Six rows of six numbers."""
-        fits = isinstance(value, tuple) and len(value) == 6 and all(self.row(row).wanted(item) is None for row, item in enumerate(value))
+        rows = value if isinstance(value, tuple) and len(value) == 6 else ((),)
+        fits = all(item.wanted(row) is None and all(map(_is_number, row)) for item, row in zip(self.items, rows, strict=False))
         return None if fits else ("a 6x6", "Give six rows of six numbers or arrays, as tuples")
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its entries on the diagonal and above."""
         for row, column in itertools.combinations_with_replacement(range(6), 2):
             name = COMPONENTS[column]
-            yield f"{COMPONENTS[row]}.{name}", self.row(row).child(None, name), value[row][column]
+            yield f"{COMPONENTS[row]}.{name}", self.items[row].child(None, name), value[row][column]
 
-    def child(self, value: Any, name: str) -> Node:
-        """A row."""
-        return self.row(COMPONENTS.index(name))
+
+COMPLIANCES = MatrixNode(_rows(COMPLIANCE, COUPLING, ROTATIONAL_COMPLIANCE), "compliance")
+STIFFNESSES = MatrixNode(_rows(STIFFNESS, COUPLING_STIFFNESS, ROTATIONAL_STIFFNESS), "stiffness")
 
 
 @dataclass(frozen=True)

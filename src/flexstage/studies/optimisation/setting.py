@@ -84,7 +84,7 @@ def setting(study: Study, definition: OptimisationProblem) -> Setting:
     require(_measure_findings(study, definition.objectives, kept))
     require(_range_findings(study))
     values = Values(study, tuple(measures))
-    shares = np.array([share_of(each, nominal_value(study, each)) for each in study.variables])
+    shares = np.array([share_of(each, each.nominal(study.design)) for each in study.variables])
     before = values(np.clip(shares, 0.0, 1.0)[None])[0]
     if isinstance(before, str):
         require([Finding("design", before, "Mend it before it is optimised")])
@@ -101,16 +101,6 @@ def _measure_findings(study: Study, objectives: tuple[Objective, ...], kept: tup
         value = value_or_reason(bench, each)
         if isinstance(value, str):
             yield Finding(where, value, "Ask for what this stage has")
-
-
-def nominal_value(study: Study, variable: Variable) -> float:
-    """The value of a variable in the design as it stands; 1 for a relative one.
-
-    >>> from flexstage.studies.optimisation.example import leaf_study
-    >>> nominal_value(leaf_study()[0], leaf_study()[0].variables[0])
-    0.001
-    """
-    return 1.0 if variable.relative else _stated_values(study, variable)[0]
 
 
 def _stated_values(study: Study, variable: Variable) -> list[float]:
@@ -134,7 +124,7 @@ def share_of(variable: Variable, value: float) -> float:
 def _range_findings(study: Study) -> Iterator[Finding]:
     """Variables whose value in the design as it stands lies outside their range, or differs among their addresses."""
     for each in study.variables:
-        where, value = f"variables.{each.name}", nominal_value(study, each)
+        where, value = f"variables.{each.name}", each.nominal(study.design)
         unit = "" if each.relative else f" {each.quantity.si}"
         slack = _EDGE * (each.high - each.low)
         if not each.low - slack <= value <= each.high + slack:

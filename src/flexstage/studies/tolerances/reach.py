@@ -19,6 +19,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
+from flexstage.spatial.frame import COMPONENTS
 
 KINDS: Mapping[str, tuple[type, ...]] = {
     "hinges": (Notch, Neck, Leaf, Compound),
@@ -138,7 +139,7 @@ def _numbers(design: Mechanism, address: str) -> Iterator[tuple[str, str]]:
     """The numbers of a vector by component; a number alone."""
     node = locate(design, address).node
     if isinstance(node, VectorNode):
-        yield from ((name, f"{address}.{name}") for name in "xyz"[: len(node.items)])
+        yield from ((name, f"{address}.{name}") for name in COMPONENTS[: len(node.items)])
     elif isinstance(node, NumberNode):
         if get(design, address) is None:
             raise refuse(address, "the description does not state it", "State it, or choose another number")

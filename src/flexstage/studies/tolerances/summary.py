@@ -221,7 +221,7 @@ def _spread(study: Tolerance, results: Results, slope: Slopes, values: Array) ->
     allowed = max(_ROUGH, _ERRORS / np.sqrt(2.0 * max(len(values), 1)))
     owners = np.array(study.owners)
     by_slope = np.stack([np.sum(parts[:, owners == number], axis=1) for number in range(len(study.scatters))])
-    alone = _variance_alone(study, results, centre=None)
+    alone = squares_alone(study, results, centre=None)
     percentiles = np.percentile(values, PERCENTILES, axis=0) if len(values) else np.full((len(PERCENTILES), len(linear)), np.nan)
     return Spread(
         names=tuple(study.columns),
@@ -240,7 +240,7 @@ def _ratio(parts: Array, whole: Array) -> Array:
     return np.divide(parts, whole, out=np.full(parts.shape, np.nan), where=np.isfinite(whole) & (whole > 0.0))
 
 
-def _variance_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
+def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
     """Variance (m, r), or mean square about a centre, of the copies in which one entry scatters alone; a single entry is the sample."""
     count, alone = study.copies, getattr(study.plan, "alone", 0)
     rows = []
@@ -251,11 +251,6 @@ def _variance_alone(study: Tolerance, results: Results, centre: Array | None) ->
         middle = values.mean(axis=0) if centre is None and len(values) else centre
         rows.append(np.mean((values - middle) ** 2, axis=0) if len(values) > 1 else np.full(results.responses.shape[1], np.nan))
     return np.stack(rows)
-
-
-def squares_alone(study: Tolerance, results: Results, centre: Array) -> Array:
-    """Mean squares (m, r) about a centre (r,) of what each entry of `[scatter]` does alone."""
-    return _variance_alone(study, results, centre)
 
 
 def _kinds(study: Tolerance) -> tuple[str, ...]:
