@@ -148,3 +148,13 @@ def test_moments_that_no_mass_has_are_refused(moments):
     body = fs.Body(mass=1.0, centre=(0.0, 0.0, 0.0), inertia=fs.Inertia(*moments))
     told = [finding.what for finding in fs.check(replace(STAGE, bodies={**STAGE.bodies, "platform": body}))]
     assert any("none may be negative or above the sum of the other two" in each for each in told)
+
+
+def test_a_value_that_its_formula_does_not_give_is_not_written():
+    """Written, the formula would take the place of the value."""
+    stage = fs.case("parallelogram")
+    left = replace(stage.links["left"], at=(0.0, 1e-3, 0.0))
+    changed = replace(stage, links={**stage.links, "left": left})
+    with pytest.raises(fs.DesignError, match=r"links\.left\.at\..: its formula .* its value is"):
+        fs.dumps(changed)
+    assert fs.loads(fs.dumps(replace(changed, formulas={}))).links["left"].at == (0.0, 1e-3, 0.0)

@@ -7,6 +7,7 @@ from typing import Any
 
 from flexstage.base.finding import require
 from flexstage.mechanism.addresses.locate import locate
+from flexstage.mechanism.checks.formula import formula_findings
 from flexstage.mechanism.checks.kind import kind_findings
 from flexstage.mechanism.grammar.grammar import TAGS, node_of
 from flexstage.mechanism.grammar.node import Node, Writer
@@ -18,7 +19,8 @@ _LAST = ("overrides", "requirements", "sources", TAGS)
 
 
 def tree_of(mechanism: Mechanism) -> dict[str, Any]:
-    """Return the tree of a description's file; raises `DesignError` for what a file cannot hold (a batch, a complex number).
+    """Return the tree of a description's file; raises `DesignError` for what a file cannot hold: a batch, a complex number, a value
+    that its formula does not give.
 
     Values equal to their defaults are left out, but for gravity.
 
@@ -26,6 +28,7 @@ def tree_of(mechanism: Mechanism) -> dict[str, Any]:
     {'format': 'flexstage 1', 'name': 'empty', 'gravity': ['0 m/s^2', '0 m/s^2', '-9.80665 m/s^2']}
     """
     require(kind_findings(mechanism))
+    require(formula_findings(mechanism))  # a value that its formula does not give would be lost
     writer = Writer(formulas=mechanism.formulas)
     tree = {"format": FORMAT} | writer.write(node_of(Mechanism), mechanism, "")
     places = {key: locate(mechanism, key) for key in mechanism.overrides}
