@@ -28,7 +28,7 @@ Amount Amplifier Asked Axes Axis Band Bearing Bench Bend Block Blocks Bounds Buc
 Comparison Compensation Contribution Course Curve Curves Doubt Draft Drive Elimination Ends Engine Evidence Fact Family Field Fit Fitted
 Followed Found Free Grid Group Hardware Hold Inertia Job Jobs Joint Judgement Kind Law Layout Limits Line Lines Margins Matrix
 Measured Modes Motion Motions Notch Numbers Outcome Pairs Part Peak Peaks Piece Place Plan Plate Point Pose Problem Reach Reading
-Resolution Response Rest Row Rule Run Scene Section Session Shape Shares Side SideBySide Simulated Slopes Slot Solid 
+Resolution Response Rest Row Rule Run Scene Section Session Shape Shares Side SideBySide Simulated Slopes Slot Solid
 Spectrum Spot Stacks Stage Start State Status Step Stream Stretch Stroke Superelement Surface Sweep System Table Task Values
 Variable Variant Verdict View Weights Writer
 """
