@@ -25,7 +25,7 @@ SOLVER = {"ngsolve", "netgen", "pyngcore", "ngsolve_openblas", "meshio", "pygltf
 
 DEFINED_TWICE = """
 Amount Amplifier Asked Axes Axis Band Bearing Bench Bend Block Blocks Bounds Buckling Channel Code Column Combination Command
-Comparison Compensation Contribution Course Curve Curves Doubt Draft Drive Elimination Ends Engine Evidence Fact Family Field Fit Fitted
+Comparison Compensation Contribution Course Curve Curves Doubt Draft Drive Elimination Ends Engine Evidence Fact Family Field Fit
 Followed Found Free Grid Group Hardware Hold Inertia Job Jobs Joint Judgement Kind Law Layout Limits Line Lines Margins Matrix
 Measured Modes Motion Motions Notch Numbers Outcome Pairs Part Peak Peaks Piece Place Plan Plate Point Pose Problem Reach Reading
 Resolution Response Rest Row Rule Run Scene Section Session Shape Shares Side SideBySide Simulated Slopes Slot Solid
