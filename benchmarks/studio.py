@@ -33,7 +33,7 @@ import psutil
 from websockets.asyncio.client import connect
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.wire import Hearer, encode
+from flexstage.apps.studio.wire import decode_said, encode
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dumps
 
@@ -46,14 +46,13 @@ class Page:
 
     def __init__(self, connection: object) -> None:
         self.connection, self.told, self.bytes, self.number = connection, {}, 0, 0
-        self.hearer = Hearer()
 
     async def until(self, true: object) -> object:
         """The message that is waited for."""
         while True:
             text = await self.connection.recv()
             self.bytes += len(text)
-            message = self.hearer.decode(text)
+            message = decode_said(text)
             self.told[type(message)] = message
             if true(message):
                 return message
@@ -103,11 +102,6 @@ async def measure(studio: psutil.Process, url: str, stage: Path, links: int) -> 
     row = next(each for each in page.told[say.State].amounts if each.address == ADDRESS)
     await page.ask(say.Line, line=1)  # the second process has started then
     await page.ask(say.Drag, address=ADDRESS, value=row.value)
-    before = spent(studio)
-    await page.ask(say.Grip, address=ADDRESS, low=row.low, high=row.high)
-    while not (await page.ask(say.Drag, address=ADDRESS, value=row.value)).fitted:
-        await asyncio.sleep(0.02)
-    print(f"a plan fitted over a slider's range: {1e3 * (spent(studio) - before):.0f} ms")
     before, sent = spent(studio), page.bytes
     for number in range(DESIGNS):
         await page.ask(say.Drag, address=ADDRESS, value=row.value * (1.0 + 0.002 * number))

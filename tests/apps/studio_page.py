@@ -10,7 +10,7 @@ from websockets.exceptions import ConnectionClosed
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.server import Studio
-from flexstage.apps.studio.wire import Hearer, encode
+from flexstage.apps.studio.wire import decode_said, encode
 
 PATIENCE = 120.0
 
@@ -27,10 +27,9 @@ class Page:
         self._listener = asyncio.create_task(self._listen())
 
     async def _listen(self):
-        hearer = Hearer()
         async for text in _texts(self.connection):
             self.bytes += len(text)
-            message = hearer.decode(text)
+            message = decode_said(text)
             kind = type(message)
             self.counts[kind] = self.counts.get(kind, 0) + 1
             if hasattr(message, "to"):

@@ -187,7 +187,6 @@ def test_of_many_moves_the_server_gets_the_first_and_the_newest(page: Page, serv
     until(page, lambda: len(server.of("drag")) == 2)
     # the slider goes from 0.2 mm to 1 mm in 1000 steps
     assert [each["value"] for each in server.of("drag")] == pytest.approx([5.2e-4, 6.8e-4])
-    assert len(server.of("grip")) == 1
 
 
 def test_a_rest_sends_the_number_in_five_digits(page: Page, server: Server) -> None:

@@ -6,9 +6,9 @@
  * A message is a JSON object whose `kind` is the class's name in small letters. The page asks, each request with an `id` of its own; what
  * answers it says `to` whom. An answer follows every request (`Done` where there is nothing else to say, `Refusal` where it is refused), in
  * the order of asking but for `Drag` and `Pose`, of which the newest is answered and older ones are `Done`. Everything else is pushed to all
- * pages when it changes: the first of a kind whole, then `changes` alone (`wire.change`). Numbers are in SI units, null where unknown.
+ * pages when it changes. Numbers are in SI units, null where unknown.
  */
-export const VERSION = 3;
+export const VERSION = 4;
 
 /** A finding: the object or address it is about, what was found, what to do; line and column from 1 where the text shows them. */
 export interface Problem {
@@ -236,15 +236,6 @@ export interface Set {
   id: number;
   address: string;
   text: string;
-}
-
-/** A slider is taken: a plan is fitted over its range in the background. */
-export interface Grip {
-  kind: "grip";
-  id: number;
-  address: string;
-  low: number;
-  high: number;
 }
 
 /** A slider moves: answered by `Frequencies`, the text stays. */
@@ -490,7 +481,7 @@ export interface State {
 /** What the process that computes is doing, for how long as far as can be told [s]; `ended` where it died and is started anew. */
 export interface Engine {
   kind: "engine";
-  state: "starts" | "ready" | "fits" | "computes" | "ended";
+  state: "starts" | "ready" | "computes" | "ended";
   text: string;
   seconds: number | null;
 }
@@ -502,13 +493,12 @@ export interface Scene {
   data: unknown;
 }
 
-/** The platform's frequencies [Hz] while a slider moves. `fitted`: by the fitted plan; else by the plain model. Null: none there. */
+/** The platform's frequencies [Hz] while a slider moves. Null: none there. */
 export interface Frequencies {
   kind: "frequencies";
   to: number;
   address: string;
   value: number;
-  fitted: boolean;
   frequencies: (number | null)[];
   problems: Problem[];
 }
@@ -726,7 +716,6 @@ export type Request =
   | Hello
   | Edit
   | Set
-  | Grip
   | Drag
   | Rest
   | Part

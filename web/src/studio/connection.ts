@@ -3,14 +3,11 @@
 import { VERSION } from "../protocol";
 import type { Hello, Refusal, Request, Said } from "../protocol";
 import { Cell } from "./cell";
-import { patched } from "./changes";
-import type { Change } from "./changes";
 
 type Asked<T> = T extends { id: number } ? Omit<T, "id"> : never;
 export type Question = Asked<Exclude<Request, Hello>>;
 type Answer<K extends Said["kind"]> = Extract<Said, { kind: K }>;
 type Act = (said: never) => void;
-type Told = Said | { kind: Said["kind"]; changes: Change };
 
 /** Requests of which only the newest counts: the one that waits, and what ends when all are answered. */
 interface Lane {
@@ -42,7 +39,6 @@ export class Connection {
   private readonly acts = new Map<string, Act[]>();
   private readonly waiting = new Map<number, (said: Said) => void>();
   private readonly lanes = new Map<string, Lane>();
-  private readonly last = new Map<string, Said>();
   private number = 0;
 
   /** Calls back at every message of a kind. */
@@ -66,7 +62,7 @@ export class Connection {
   }
 
   private hear(text: string): void {
-    const said = this.whole(JSON.parse(text) as Told);
+    const said = JSON.parse(text) as Said;
     this.count.received += 1;
     this.count.characters += text.length;
     if (said.kind === "welcome") this.state.set("open");
@@ -74,13 +70,6 @@ export class Connection {
     if (!("to" in said)) return;
     this.waiting.get(said.to)?.(said);
     this.waiting.delete(said.to);
-  }
-
-  /** A message with what stays of the last one of its kind. */
-  private whole(told: Told): Said {
-    const said = "changes" in told ? (patched(this.last.get(told.kind), told.changes) as Said) : told;
-    if (!("to" in said)) this.last.set(said.kind, said);
-    return said;
   }
 
   /** Asks; the answer is also told to whoever listens to its kind. */

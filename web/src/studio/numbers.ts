@@ -84,7 +84,7 @@ export class Numbers {
     const address = row.amount.address;
     const [rest, held] = [rested(REST, () => this.rest(row)), rested(HELD, () => this.rest(row))];
     let isHeld = false;
-    slider.addEventListener("pointerdown", () => ((isHeld = true), void this.studio.ask({ kind: "grip", address, low: row.amount.low, high: row.amount.high })));
+    slider.addEventListener("pointerdown", () => (isHeld = true));
     slider.addEventListener("input", () => this.drag(row, isHeld ? held : rest));
     slider.addEventListener("change", () => ((isHeld = false), rest.now() || held.now()));
     field.addEventListener("keydown", (event) => this.type(row, event));

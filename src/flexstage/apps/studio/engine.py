@@ -22,7 +22,6 @@ TASKS: Mapping[str, str] = {
     "follow": "design.reading:follow",
     "insert": "design.palette:insert",
     "place": "questions:place",
-    "fit": "dragging:fit",
     "drag": "dragging:drag",
     "figures": "results:figures",
     "verdicts": "results:verdicts",

@@ -3,7 +3,7 @@
 A message is a JSON object whose `kind` is the class's name in small letters. The page asks, each request with an `id` of its own; what
 answers it says `to` whom. An answer follows every request (`Done` where there is nothing else to say, `Refusal` where it is refused), in
 the order of asking but for `Drag` and `Pose`, of which the newest is answered and older ones are `Done`. Everything else is pushed to all
-pages when it changes: the first of a kind whole, then `changes` alone (`wire.change`). Numbers are in SI units, null where unknown.
+pages when it changes. Numbers are in SI units, null where unknown.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-VERSION = 3
+VERSION = 4
 """Raised when a message changes its meaning."""
 
 # --- what messages are made of ---
@@ -287,16 +287,6 @@ class Set:
 
 
 @dataclass(frozen=True)
-class Grip:
-    """A slider is taken: a plan is fitted over its range in the background."""
-
-    id: int
-    address: str
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
 class Drag:
     """A slider moves: answered by `Frequencies`, the text stays."""
 
@@ -568,7 +558,7 @@ class State:
 class Engine:
     """What the process that computes is doing, for how long as far as can be told [s]; `ended` where it died and is started anew."""
 
-    state: Literal["starts", "ready", "fits", "computes", "ended"]
+    state: Literal["starts", "ready", "computes", "ended"]
     text: str
     seconds: float | None
 
@@ -583,12 +573,11 @@ class Scene:
 
 @dataclass(frozen=True)
 class Frequencies:
-    """The platform's frequencies [Hz] while a slider moves. `fitted`: by the fitted plan; else by the plain model. Null: none there."""
+    """The platform's frequencies [Hz] while a slider moves. Null: none there."""
 
     to: int
     address: str
     value: float
-    fitted: bool
     frequencies: tuple[float | None, ...]
     problems: tuple[Problem, ...]
 
@@ -822,7 +811,6 @@ Request: TypeAlias = (
     Hello
     | Edit
     | Set
-    | Grip
     | Drag
     | Rest
     | Part

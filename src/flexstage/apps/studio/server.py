@@ -22,7 +22,7 @@ from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.design.history import Stored
 from flexstage.apps.studio.design.journal import Journal
 from flexstage.apps.studio.session import Session
-from flexstage.apps.studio.wire import FOLLOWING, Teller, decode
+from flexstage.apps.studio.wire import decode, encode
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.version import __version__
 
@@ -32,7 +32,7 @@ LARGEST = 8_000_000
 _PATIENCE = 10.0
 """How long a page may take to say its token [s]."""
 _PAGES = 16
-_KEPT = (say.Welcome, say.Engine, *FOLLOWING)
+_KEPT = (say.Welcome, say.Engine, say.State, say.Scene, say.Figures, say.Verdicts, say.Reach, say.Warnings, say.Jobs)
 """Of what is pushed the newest alone is worth sending."""
 _STUDIO, _SHOW = Path(__file__).with_name("static"), Path(show.__file__).with_name("static")
 _SCRIPT, _PLAIN = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
@@ -209,7 +209,6 @@ class Outbox:
     def __init__(self) -> None:
         self._waiting: deque[say.Said] = deque()
         self._filled = asyncio.Event()
-        self._teller = Teller()
         self.sent = 0
         """Bytes that went out."""
 
@@ -229,7 +228,7 @@ class Outbox:
                 await self._filled.wait()
                 self._filled.clear()
                 while self._waiting:
-                    text = self._teller.encode(self._waiting.popleft())
+                    text = encode(self._waiting.popleft())
                     self.sent += len(text)
                     await connection.send(text)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar, Generic, TypeVar
 
 from flexstage.apps.studio import protocol as say
@@ -22,8 +22,6 @@ _QUIET = 0.3
 """A computation of less time is not announced [s]."""
 _STALE = 3.0
 """After so long what is computed of a text that is no more is ended with its process [s]."""
-_MOSTLY = 0.6
-"""How much of a slider's range a plan that is there must cover."""
 _STAGES: tuple[tuple[str, str], ...] = (
     ("figures", "stiffness, lost motion, modes and responses"),
     ("verdicts", "requirements"),
@@ -69,8 +67,6 @@ class Session:
         self._slow: Helper | None = None
         self._far: Helper | None = None
         self._choice: tuple[Any, ...] = ((), (), None, None)
-        self._plan: Fitted | None = None
-        self._wanted: Fitted | None = None
         self._drags, self._poses = Newest[say.Drag](self._revision), Newest[say.Pose](self._revision)
         self._computed = 0
         self._warnings: tuple[say.Problem, ...] = ()
@@ -143,9 +139,6 @@ class Session:
             written = await self._asked(self._quick, "write", text, self._file, request.address, value)
             if self.history.revision != revision:
                 raise refuse(request.address, "the text was changed meanwhile", "Set it again")
-            plan = self._plan
-            if plan is not None and (plan.fits, plan.address) == (text, request.address):
-                self._plan = replace(plan, fits=written.text)
             if written.stated and self._quick is not self._model and text == self._design:
                 call = ("follow", written.text, self._file, text, request.address, written.stated)
                 self._start(self._model.do(*call, urgency=Urgency.SOON))
@@ -220,31 +213,13 @@ class Session:
         values = tuple(tuple(table.get(name) for table in by_name) for name in known)
         tell(say.Comparison(request.id, tuple(texts), rows, values))
 
-    async def _take_grip(self, request: say.Grip, _: int, tell: Tell) -> None:
-        """A plan for this slider, in the background; the one there is, where that covers most of the range."""
-        tell(say.Done(request.id, self.history.revision))
-        if self._plan is not None and self._plan.serves(self._design, request):
-            return
-        wanted = self._wanted = Fitted(self._design, request.address, request.low, request.high, self._design)
-        self._push(say.Engine("fits", f"A plan for {request.address} is fitted", None))
-        call = ("fit", wanted.text, self._file, wanted.address, wanted.low, wanted.high)
-        outcome = await self._quick.ask(*call, wanted=lambda: self._wanted is wanted)
-        if outcome is not None and not outcome.problems and self._wanted is wanted:
-            self._plan = wanted
-        self._push(say.Engine("ready", "", None))
-
     async def _take_drag(self, request: say.Drag, _: int, tell: Tell) -> None:
         await self._drags.put(request, tell, self._dragged)
 
     async def _dragged(self, request: say.Drag) -> say.Said:
-        plan = self._plan
-        if plan is not None and (plan.fits, plan.address) == (self._design, request.address):
-            helper, text, ends = self._quick, plan.text, (plan.low, plan.high)
-        else:
-            helper, text, ends = self._model, self._design, None
-        outcome = await helper.ask("drag", text, self._file, request.address, request.value, ends)
+        outcome = await self._quick.ask("drag", self._design, self._file, request.address, request.value)
         found, problems = (outcome.value or (), outcome.problems) if outcome else ((), ())
-        return say.Frequencies(request.id, request.address, request.value, ends is not None, found, problems)
+        return say.Frequencies(request.id, request.address, request.value, found, problems)
 
     async def _take_pose(self, request: say.Pose, _: int, tell: Tell) -> None:
         await self._poses.put(request, tell, lambda each: self._question("posed", each.id, each.inputs))
@@ -320,7 +295,6 @@ class Session:
         say.Edit: _edit,
         say.Set: _set,
         say.Rest: _set,
-        say.Grip: _take_grip,
         say.Drag: _take_drag,
         say.Part: _part,
         say.Line: _line,
@@ -530,7 +504,7 @@ class Session:
 
     @property
     def _quick(self) -> Helper:
-        """Who reads texts and computes designs of a fitted plan."""
+        """Who reads texts and computes what a slider asks."""
         return self._reader or self._model
 
     async def _asked(self, helper: Helper, *call: Any, heard: Callable[[Any], None] = nobody) -> Any:
@@ -562,22 +536,6 @@ def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> f
     """
     seconds, size = took.get(stage, (_FIRST[stage], 30))
     return seconds * (links / max(size, 1)) ** 2
-
-
-@dataclass(frozen=True, eq=False)
-class Fitted:
-    """A plan fitted over a slider's range for a text; it `fits` that text, or the one in which only this number is another one."""
-
-    text: str
-    address: str
-    low: float
-    high: float
-    fits: str
-
-    def serves(self, text: str, request: say.Grip) -> bool:
-        """Whether it covers most of what a slider asks."""
-        common = min(self.high, request.high) - max(self.low, request.low)
-        return (self.fits, self.address) == (text, request.address) and common >= _MOSTLY * (request.high - request.low)
 
 
 _Asked = TypeVar("_Asked", say.Drag, say.Pose)

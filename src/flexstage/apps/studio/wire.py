@@ -21,10 +21,6 @@ _Kinds: TypeAlias = Mapping[str, type]
 _LARGEST = 2**53 - 1
 """The largest integer that a page and this server read alike."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
-_BLOCK = 64
-"""Letters that are compared at once."""
-FOLLOWING = (protocol.State, protocol.Scene, protocol.Figures, protocol.Verdicts, protocol.Reach, protocol.Warnings, protocol.Jobs)
-"""Kinds of which a page has the last one: what changed in it is told."""
 
 
 def encode(message: Said | Request) -> str:
@@ -40,112 +36,6 @@ def decode(text: str | bytes) -> Request:
 def decode_said(text: str | bytes) -> Said:
     """What the server said, from its text; raises `DesignError` where that is none."""
     return _read(text, _kinds(protocol.Said))
-
-
-class Teller:
-    """Writes what is told one page: of kinds that follow each other, what changed since the last of them."""
-
-    def __init__(self) -> None:
-        self._last: dict[type, Said] = {}
-
-    def encode(self, message: Said) -> str:
-        """The text of a message."""
-        kind = type(message)
-        last, self._last[kind] = self._last.get(kind), message
-        if last is None or kind not in FOLLOWING:
-            return encode(message)
-        return json.dumps({"kind": kind.__name__.lower(), "changes": change(last, message)}, ensure_ascii=False, allow_nan=False)
-
-
-class Hearer:
-    """Reads what a `Teller` writes."""
-
-    def __init__(self) -> None:
-        self._last: dict[str, Any] = {}
-
-    def decode(self, text: str | bytes) -> Said:
-        """What the server said; raises `DesignError` where the text is none of it."""
-        found = json.loads(text)
-        if "changes" in found:
-            found = {**patched(self._last[found["kind"]], found["changes"]), "kind": found["kind"]}
-        self._last[found["kind"]] = found
-        return _told(found, _kinds(protocol.Said))
-
-
-def change(old: Any, new: Any) -> list[Any] | None:
-    """What makes one value of another: `=` and the new one; by key or place, with keys that are gone; of texts, what stands where.
-
-    Mappings whose keys stand in another order are told anew.
-
-    >>> change({"a": 1, "b": (1, 2)}, {"a": 1, "b": (1, 3)})
-    ['@', {'b': ['@', {1: ['=', 3]}, []]}, []]
-    """
-    if old is new or (type(old) is type(new) and old == new):
-        return None
-    if is_dataclass(new) and type(old) is type(new):
-        return _change_of(
-            {each.name: getattr(old, each.name) for each in fields(new)}, {each.name: getattr(new, each.name) for each in fields(new)}
-        )
-    if (
-        isinstance(new, Mapping)
-        and isinstance(old, Mapping)
-        and [*(key for key in old if key in new), *(key for key in new if key not in old)] == [*new]
-    ):
-        return _change_of(old, new)
-    if isinstance(new, (tuple, list)) and isinstance(old, (tuple, list)) and len(old) == len(new):
-        return _change_of(dict(enumerate(old)), dict(enumerate(new)))
-    if isinstance(new, str) and isinstance(old, str) and min(len(old), len(new)) > _BLOCK and _counts_alike(old + new):
-        return ["~", _splices(old, new)]
-    return ["=", _plain(new)]
-
-
-def _change_of(old: Mapping[Any, Any], new: Mapping[Any, Any]) -> list[Any]:
-    nodes = {key: change(old[key], value) if key in old else ["=", _plain(value)] for key, value in new.items()}
-    return ["@", {key: node for key, node in nodes.items() if node is not None}, [key for key in old if key not in new]]
-
-
-def _splices(old: str, new: str) -> list[tuple[int, int, str]]:
-    """Where texts differ: from, to in the old one, and what stands there; of equal lengths by blocks, else one piece."""
-    if len(old) != len(new):
-        ahead = _alike(old, new)
-        behind = _alike(old[ahead:][::-1], new[ahead:][::-1])
-        return [(ahead, len(old) - behind, new[ahead : len(new) - behind])]
-    starts = (start for start in range(0, len(new), _BLOCK) if old[start : start + _BLOCK] != new[start : start + _BLOCK])
-    found: list[tuple[int, int, str]] = []
-    for start in starts:
-        begin = found.pop()[0] if found and found[-1][1] == start else start
-        found.append((begin, min(start + _BLOCK, len(new)), new[begin : start + _BLOCK]))
-    return found
-
-
-def _alike(one: str, other: str) -> int:
-    """How many letters two texts begin with alike."""
-    return next((place for place, (own, its) in enumerate(zip(one, other, strict=False)) if own != its), min(len(one), len(other)))
-
-
-def _counts_alike(text: str) -> bool:
-    """Whether a page counts as many letters: in its language some are two."""
-    return text.isascii() or max(text) <= "\uffff"
-
-
-def patched(held: Any, node: list[Any] | None) -> Any:
-    """A plain value with its `change`, as JSON has both.
-
-    >>> patched("x" * 9, ["~", [[2, 3, "yy"]]])
-    'xxyyxxxxxx'
-    """
-    if node is None:
-        return held
-    if node[0] == "=":
-        return node[1]
-    if node[0] == "~":
-        for start, stop, text in reversed(node[1]):
-            held = held[:start] + text + held[stop:]
-        return held
-    if isinstance(held, list):
-        return [patched(item, node[1].get(str(place))) for place, item in enumerate(held)]
-    kept = {key: item for key, item in held.items() if key not in node[2]}
-    return {**kept, **{key: patched(held.get(key), item) for key, item in node[1].items()}}
 
 
 def floats(values: Any) -> Floats:
