@@ -17,7 +17,7 @@ from flexstage.show.figures.style import canvas
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.raster import nearest, normals, planes, visible_lines
-from flexstage.show.scene.skin import Kind, Skin, extrude, loft, pierce, rectangle
+from flexstage.show.scene.skin import DrawnSurface, Kind, extrude, loft, pierce, rectangle
 from flexstage.show.scene.stage import scene
 from flexstage.show.scene.view import Side, fit, pixels, view, write
 from flexstage.show.viewer.data import still_data
@@ -31,7 +31,7 @@ VECTOR = st.tuples(UNIT, UNIT, UNIT).map(np.array)
 SIZES = st.tuples(*[st.floats(0.1, 0.6)] * 3)
 
 
-def box(centre: Array, size: tuple[float, float, float], turn: Array) -> Skin:
+def box(centre: Array, size: tuple[float, float, float], turn: Array) -> DrawnSurface:
     rings = extrude(0.5 * size[0] * np.array([-1.0, 1.0]), [rectangle(size[1], size[2])] * 2)
     return loft(rings).placed(Frame(exponential(turn), centre))
 
@@ -39,19 +39,19 @@ def box(centre: Array, size: tuple[float, float, float], turn: Array) -> Skin:
 BOXES = st.lists(st.tuples(VECTOR, SIZES, VECTOR).map(lambda item: box(*item)), min_size=1, max_size=5)
 
 
-def volume(skin: Skin) -> float:
+def volume(skin: DrawnSurface) -> float:
     a, b, c = skin.points[skin.triangles].transpose(1, 0, 2)
     return float(np.sum(a * np.cross(b, c)) / 6.0)
 
 
-def flux(skin: Skin) -> Array:
+def flux(skin: DrawnSurface) -> Array:
     a, b, c = skin.points[skin.triangles].transpose(1, 0, 2)
     return 0.5 * np.sum(np.cross(b - a, c - a), axis=0)
 
 
 @examples(18, 600)
 @given(BOXES)
-def test_the_nearest_triangle_is_the_one_that_a_ray_meets_first(boxes: list[Skin]) -> None:
+def test_the_nearest_triangle_is_the_one_that_a_ray_meets_first(boxes: list[DrawnSurface]) -> None:
     """Of all pixels whose ray does not pass within a hair of an edge."""
     shape = (24, 32)
     corners = np.concatenate([skin.points[skin.triangles] for skin in boxes]) * [10.0, 10.0, 10.0] + [16.0, 12.0, 0.0]
@@ -74,7 +74,7 @@ def test_the_nearest_triangle_is_the_one_that_a_ray_meets_first(boxes: list[Skin
 
 @examples(18, 600)
 @given(BOXES)
-def test_solids_are_closed_and_face_outward(boxes: list[Skin]) -> None:
+def test_solids_are_closed_and_face_outward(boxes: list[DrawnSurface]) -> None:
     for skin in boxes:
         assert np.linalg.norm(flux(skin)) < 1e-9
         assert volume(skin) > 0.0

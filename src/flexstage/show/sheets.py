@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from flexstage.base.arguments import check_arguments
@@ -27,7 +28,49 @@ def to_csv(result: Any) -> dict[str, str]:
     >>> to_csv({"gain": 2.0, "loss": {"B1": 0.1}})
     {'': 'gain\r\n2.0\r\n', 'loss': 'name,loss\r\nB1,0.1\r\n'}
     """
-    return {path: _text(_matrix_lines(part) if isinstance(part, Matrix) else _lines(part.heads)) for path, part in parts(result)}
+    return {path: _text(_lines(part)) for path, part in parts(result)}
+
+
+def _lines(part: Sheet | Matrix) -> Iterator[Sequence[Any]]:
+    grid = grid_of(part)
+    units = grid.units if isinstance(part, Matrix) else ("",) * len(grid.heads)  # heads of sheets are keys, which end in units
+    yield [f"{head} [{unit}]" if unit else head for head, unit in zip(grid.heads, units, strict=True)]
+    yield from grid.rows
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A part of a result as a spreadsheet has it: heads, their SI units, and rows, whose first cells are names, so many as `named`."""
+
+    heads: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: tuple[Sequence[Any], ...]
+    named: int
+
+
+def grid_of(part: Sheet | Matrix) -> Grid:
+    """The grid of a part; a matrix whose units no columns have in common has them beside its rows, or beside its entries, a row each.
+
+    >>> import numpy as np
+    >>> grid_of(Matrix(np.array([[2.0, 3.0]]), ("x",), ("a", "b"), (("m", "N"),)))
+    Grid(heads=('row', 'a', 'b'), units=('', 'm', 'N'), rows=(['x', 2.0, 3.0],), named=1)
+    """
+    if isinstance(part, Sheet):
+        units = ("" if field.unit == "1" else field.unit for field in part.columns)
+        named = len(part.names)
+        return Grid(tuple(part.heads), (*("",) * named, *units), tuple(zip(*part.heads.values(), strict=True)), named)
+    columns, rows, cells = part.unit_places
+    values = first_design(part.values, 2).tolist()
+    if any(map(any, cells)):
+        lines = zip(part.rows, values, cells, strict=True)
+        entries = [(name, *entry) for name, line, own in lines for entry in zip(part.columns, own, line, strict=True)]
+        return Grid(("row", "column", "unit", "value"), ("",) * 4, tuple(entries), 2)
+    beside = any(rows)
+    lines = ([name, *([unit] if beside else []), *line] for name, unit, line in zip(part.rows, rows, values, strict=True))
+    names = ("row", "unit")[: 1 + beside]
+    return Grid(
+        (*names, *part.columns), (*("",) * len(names), *("" if unit == "1" else unit for unit in columns)), tuple(lines), len(names)
+    )
 
 
 def _text(lines: Iterable[Sequence[Any]]) -> str:
@@ -43,25 +86,6 @@ def _cell(value: Any) -> Any:
     if isinstance(value, str) and value.lstrip().startswith(_FORMULA):
         return f"'{value}"
     return str(value).lower() if isinstance(value, bool) else value
-
-
-def _lines(heads: Mapping[str, tuple[Any, ...]]) -> Iterator[Sequence[Any]]:
-    yield tuple(heads)
-    yield from zip(*heads.values(), strict=True)
-
-
-def _matrix_lines(matrix: Matrix) -> Iterator[Sequence[Any]]:
-    columns, rows, cells = matrix.unit_places
-    values = first_design(matrix.values, 2).tolist()
-    if any(map(any, cells)):
-        yield "row", "column", "unit", "value"
-        for name, line, units in zip(matrix.rows, values, cells, strict=True):
-            yield from ((name, *entry) for entry in zip(matrix.columns, units, line, strict=True))
-        return
-    heads = [name if unit in ("", "1") else f"{name} [{unit}]" for name, unit in zip(matrix.columns, columns, strict=True)]
-    yield ["row", *(["unit"] if any(rows) else []), *heads]
-    for name, unit, line in zip(matrix.rows, rows, values, strict=True):
-        yield [name, *([unit] if any(rows) else []), *line]
 
 
 @check_arguments

@@ -6,18 +6,16 @@ import io
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, count
 from typing import Any
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
-from flexstage.base.labelled import Matrix
-from flexstage.base.storage.sheet import Sheet, parts, plain_cell
+from flexstage.base.storage.sheet import parts, plain_cell
 from flexstage.base.text import printable
 from flexstage.base.version import __version__
-from flexstage.show.table import first_design
+from flexstage.show.sheets import Grid, grid_of
 
 PROVENANCE = "provenance"
 _LONGEST_NAME = 31
@@ -26,16 +24,6 @@ _MOST_ROWS, _MOST_COLUMNS, _LONGEST_TEXT = 1_048_576, 16_384, 32_767
 _LARGEST = 9.99999999999999e307  # that a cell takes; 16 digits of the largest float are beyond all floats
 _WIDEST = 40
 _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone; equal results are equal files)
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """A table as it stands in a sheet: heads, their SI units, and rows."""
-
-    heads: tuple[str, ...]
-    units: tuple[str, ...]
-    rows: tuple[Sequence[Any], ...]
-    named: int
 
 
 @check_arguments
@@ -52,7 +40,7 @@ def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
     import xlsxwriter
 
     content = io.BytesIO()
-    grids = {path: _grid(part) for path, part in parts(result)}
+    grids = {path: grid_of(part) for path, part in parts(result)}
     names = sheet_names([*grids, PROVENANCE])
     with xlsxwriter.Workbook(content, {"in_memory": True, "nan_inf_to_errors": False}) as book:
         book.set_properties({"created": _WRITTEN, "comments": f"flexstage {__version__}"})
@@ -62,7 +50,7 @@ def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
     return content.getvalue()
 
 
-def _write(sheet: Any, grid: _Grid, head: Any, unit: Any) -> None:
+def _write(sheet: Any, grid: Grid, head: Any, unit: Any) -> None:
     if len(grid.rows) + 2 > _MOST_ROWS or len(grid.heads) > _MOST_COLUMNS:
         size = f"{len(grid.rows)} rows and {len(grid.heads)} columns"
         raise refuse(sheet.name, f"{size} are more than a sheet of a workbook holds", "Write CSV files: --csv FOLDER")
@@ -95,40 +83,14 @@ def _text(text: str) -> str:
     return text if len(text) <= _LONGEST_TEXT else f"{text[: _LONGEST_TEXT - 4]} ..."
 
 
-def _widths(grid: _Grid) -> Iterator[int]:
+def _widths(grid: Grid) -> Iterator[int]:
     """Widths of columns in characters, by their heads and first rows."""
     for column, texts in enumerate(zip(grid.heads, grid.units, strict=True)):
         cells = (str(row[column]) for row in grid.rows[:50])
         yield min(_WIDEST, 2 + max(len(text) for text in chain(texts, cells)))
 
 
-def _grid(part: Sheet | Matrix) -> _Grid:
-    return _matrix_grid(part) if isinstance(part, Matrix) else _sheet_grid(part)
-
-
-def _sheet_grid(sheet: Sheet) -> _Grid:
-    units = [field.unit if field.unit != "1" else "" for field in sheet.columns]
-    names = len(sheet.names)
-    return _Grid(tuple(sheet.heads), (*("",) * names, *units), tuple(zip(*sheet.heads.values(), strict=True)), names)
-
-
-def _matrix_grid(matrix: Matrix) -> _Grid:
-    columns, rows, cells = matrix.unit_places
-    values = first_design(matrix.values, 2).tolist()
-    if any(map(any, cells)):
-        entries = (
-            (name, *entry)
-            for name, line, units in zip(matrix.rows, values, cells, strict=True)
-            for entry in zip(matrix.columns, units, line, strict=True)
-        )
-        return _Grid(("row", "column", "unit", "value"), ("",) * 4, tuple(entries), 2)
-    beside = any(rows)
-    lines = tuple((name, *([unit] if beside else []), *line) for name, unit, line in zip(matrix.rows, rows, values, strict=True))
-    heads = ("row", *(["unit"] if beside else []), *matrix.columns)
-    return _Grid(heads, (*[""] * (1 + beside), *("" if unit == "1" else unit for unit in columns)), lines, 1 + beside)
-
-
-def _about(result: Any, about: Mapping[str, Any]) -> _Grid:
+def _about(result: Any, about: Mapping[str, Any]) -> Grid:
     own = getattr(result, PROVENANCE, None)
     said = {
         "flexstage": __version__,
@@ -138,7 +100,7 @@ def _about(result: Any, about: Mapping[str, Any]) -> _Grid:
     }
     rows = [(key, value) for key, value in said.items() if not isinstance(value, (list, tuple))]
     rows += [(key, str(each)) for key, value in said.items() if isinstance(value, (list, tuple)) for each in value]
-    return _Grid(("what", "value"), ("", ""), tuple(rows), 1)
+    return Grid(("what", "value"), ("", ""), tuple(rows), 1)
 
 
 def sheet_names(paths: Sequence[str]) -> list[str]:

@@ -104,15 +104,17 @@ export class Model {
     this.pickScene.add(this.picking);
   }
 
+  /** Opaque faces, the depth of translucent ones, and their colours: only the nearest translucent face tints what is behind it. */
   private addSurfaces(): void {
-    for (const translucent of [0, 1]) {
+    for (const [order, translucent, coloured] of [[0, 0, true], [2, 1, false], [3, 1, true]] as const) {
       const material = this.material(surfaceVertex, surfaceFragment, { translucent: { value: translucent }, opacity: { value: 1 } }, translucent === 1);
       material.polygonOffset = true;
       material.polygonOffsetFactor = material.polygonOffsetUnits = 1;
-      material.depthWrite = translucent === 0;
+      material.colorWrite = coloured;
+      material.depthWrite = order < 3;
       if (translucent) material.side = FrontSide;
       const surface = new Mesh(this.surface, material);
-      surface.renderOrder = 2 * translucent;
+      surface.renderOrder = order;
       this.add(surface);
     }
   }

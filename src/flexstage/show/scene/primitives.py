@@ -13,7 +13,7 @@ from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, 
 from flexstage.parts.part import Part, inner
 from flexstage.parts.section import Rectangle
 from flexstage.parts.shape import Profiled, Shaped
-from flexstage.show.scene.skin import ROUND, Skin, circle, extrude, face, join, loft, pierce, rectangle
+from flexstage.show.scene.skin import ROUND, DrawnSurface, circle, extrude, face, join, loft, pierce, rectangle
 from flexstage.spatial.frame import Frame
 
 _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
@@ -53,7 +53,7 @@ def part_section(part: Part) -> tuple[float, float]:
     return first_value(end.height), first_value(end.width)
 
 
-def part_skin(part: Part, marker: float, *, steps: int = 1) -> Skin:
+def part_skin(part: Part, marker: float, *, steps: int = 1) -> DrawnSurface:
     """The skin of a part in its link frame; a part without a shape of its own is a cube of edge `marker` [m].
 
     No ring of it is farther from the next one than the part's length over `steps`.
@@ -99,7 +99,7 @@ def simplification(solid: Solid) -> str:
     return "without holes" if isinstance(solid, Pierced) else "as the box around it" if isinstance(solid, Imported) else ""
 
 
-def solid_skin(solid: Solid) -> Skin:
+def solid_skin(solid: Solid) -> DrawnSurface:
     """The skin of an outline in its own frame: its centre at the origin, a cylinder's axis along x; of holes their edges alone.
 
     >>> len(solid_skin(Block("steel", (0.1, 0.1, 0.01))).triangles)
@@ -123,7 +123,7 @@ def first_frame(frame: Frame) -> Frame:
     return Frame(first_design(np.real(frame.rotation), 2), first_design(np.real(frame.position), 1))
 
 
-def _block(solid: Block) -> Skin:
+def _block(solid: Block) -> DrawnSurface:
     size = [first_value(value) for value in solid.size]
     outer = _prism(rectangle(size[0], size[1]), size[2])
     if solid.hole is None:
@@ -136,7 +136,7 @@ def _prism(section: Array, height: float) -> Array:
     return np.stack([np.column_stack([section, np.full(len(section), level)]) for level in (-0.5 * height, 0.5 * height)])
 
 
-def _cylinder(solid: Cylinder) -> Skin:
+def _cylinder(solid: Cylinder) -> DrawnSurface:
     ends = 0.5 * first_value(solid.length) * np.array([-1.0, 1.0])
     outer = extrude(ends, [circle(first_value(solid.diameter), 24)] * 2)
     if solid.bore is None:
@@ -144,20 +144,20 @@ def _cylinder(solid: Cylinder) -> Skin:
     return pierce(outer, extrude(ends, [circle(first_value(solid.bore), 24)] * 2), along=ROUND)
 
 
-def _extrusion(solid: Extrusion) -> Skin:
+def _extrusion(solid: Extrusion) -> DrawnSurface:
     corners = first_design(np.real(solid.corners), 2)
     sides, trios = loft(_prism(corners, first_value(solid.height)), closed=False), np.array(triangles(corners))
     return replace(sides, triangles=np.concatenate([sides.triangles, trios + len(corners), trios[:, ::-1]]))
 
 
-def _sphere(solid: Sphere) -> Skin:
+def _sphere(solid: Sphere) -> DrawnSurface:
     radius = 0.5 * first_value(solid.diameter)
     angles = np.linspace(0.0, np.pi, 13)[1:-1]
     rings = extrude(-radius * np.cos(angles), [circle(2.0 * radius * float(np.sin(angle)), 24) for angle in angles])
     return loft(rings, ringed=(), along=ROUND)
 
 
-_SOLIDS: Mapping[type[Solid], Callable[[Any], Skin]] = {
+_SOLIDS: Mapping[type[Solid], Callable[[Any], DrawnSurface]] = {
     Block: _block,
     Cylinder: _cylinder,
     Extrusion: _extrusion,

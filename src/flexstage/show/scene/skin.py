@@ -28,7 +28,7 @@ ROUND = slice(0)
 
 
 @dataclass(frozen=True, eq=False)
-class Skin:
+class DrawnSurface:
     """A surface: `points` (n, 3) [m], `triangles` (t, 3) of them, counter-clockwise from outside, and sharp `edges` (e, 2).
 
     Where two bodies carry it, point k follows the first by 1 - `share`[k] and the second by `share`[k].
@@ -39,12 +39,12 @@ class Skin:
     edges: Array
     share: Array
 
-    def placed(self, frame: Frame) -> Skin:
+    def placed(self, frame: Frame) -> DrawnSurface:
         """The skin of a frame in the one that the frame is placed in."""
         return replace(self, points=self.points @ frame.rotation.T + frame.position)
 
 
-def join(skins: Sequence[Skin]) -> Skin:
+def join(skins: Sequence[DrawnSurface]) -> DrawnSurface:
     """Skins as one.
 
     >>> bar = line(np.zeros((2, 3)))
@@ -52,7 +52,7 @@ def join(skins: Sequence[Skin]) -> Skin:
     [[0, 1], [2, 3]]
     """
     starts = np.cumsum([0, *(len(each.points) for each in skins)])
-    return Skin(
+    return DrawnSurface(
         np.concatenate([np.zeros((0, 3)), *(each.points for each in skins)]),
         np.concatenate([np.zeros((0, 3), dtype=int), *(each.triangles + start for each, start in zip(skins, starts, strict=False))]),
         np.concatenate([np.zeros((0, 2), dtype=int), *(each.edges + start for each, start in zip(skins, starts, strict=False))]),
@@ -67,7 +67,7 @@ def loft(
     along: slice = slice(None),
     closed: bool = True,
     shares: Array | None = None,
-) -> Skin:
+) -> DrawnSurface:
     """The skin through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first; end faces where `closed`.
 
     The bodies' `shares` (s,) run from 0 at the first ring to 1 at the last, evenly if they are not given. Sharp are the rings that are
@@ -85,7 +85,7 @@ def loft(
     edges = [_rows(here[list(ringed)], after[list(ringed)]), _rows(here[:-1][along], here[1:][along])]
     triangles += [fan(here[0, ::-1]), fan(here[-1])] if closed else []
     share = np.repeat(np.linspace(0.0, 1.0, count) if shares is None else shares, sides)
-    return Skin(rings.reshape(-1, 3), np.concatenate(triangles), np.concatenate(edges), share)
+    return DrawnSurface(rings.reshape(-1, 3), np.concatenate(triangles), np.concatenate(edges), share)
 
 
 def _rows(*columns: Array) -> Array:
@@ -101,17 +101,17 @@ def fan(corners: Array) -> Array:
     return np.column_stack([np.full(len(corners) - 2, corners[0]), corners[1:-1], corners[2:]])
 
 
-def face(points: Array, share: float) -> Skin:
+def face(points: Array, share: float) -> DrawnSurface:
     """A convex polygon (k, 3) that follows its bodies by a share.
 
     >>> len(face(np.zeros((5, 3)), 1.0).triangles)
     3
     """
     count = len(points)
-    return Skin(points, fan(np.arange(count)), np.zeros((0, 2), dtype=int), np.full(count, share))
+    return DrawnSurface(points, fan(np.arange(count)), np.zeros((0, 2), dtype=int), np.full(count, share))
 
 
-def pierce(outer: Array, inner: Array, *, along: slice = slice(0, None, 2)) -> Skin:
+def pierce(outer: Array, inner: Array, *, along: slice = slice(0, None, 2)) -> DrawnSurface:
     """A prism with a through hole: `outer` and `inner` rings (2, k, 3), first the bottom, then the top, points facing one another.
 
     >>> square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
@@ -152,10 +152,10 @@ def extrude(stations: Array, sections: list[Array]) -> Array:
     )
 
 
-def line(points: Array) -> Skin:
+def line(points: Array) -> DrawnSurface:
     """A line between two points (2, 3), each following its body.
 
     >>> line(np.zeros((2, 3))).share.tolist()
     [0.0, 1.0]
     """
-    return Skin(points, np.zeros((0, 3), dtype=int), np.array([[0, 1]]), np.array([0.0, 1.0]))
+    return DrawnSurface(points, np.zeros((0, 3), dtype=int), np.array([[0, 1]]), np.array([0.0, 1.0]))

@@ -15,7 +15,7 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.body import PlacedSolid
 from flexstage.parts.part import is_actuator
 from flexstage.show.scene.primitives import first_frame, part_length, part_section, part_skin, solid_skin
-from flexstage.show.scene.skin import ROUND, Kind, Skin, circle, extrude, join, line, loft, rectangle
+from flexstage.show.scene.skin import ROUND, DrawnSurface, Kind, circle, extrude, join, line, loft, rectangle
 from flexstage.spatial.frame import Frame, axes
 
 _MARKER = 0.02
@@ -35,13 +35,13 @@ class Label:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class DrawnPiece:
     """A skin in the stage's frame, the name (`B1/front`, `platform.plate`) and kind of what it shows, the bodies that carry it."""
 
     name: str
     kind: Kind
     bodies: tuple[str, str]
-    skin: Skin
+    skin: DrawnSurface
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class Scene:
     `references` are the bodies' reference points (3,), about which their twists turn them.
     """
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[DrawnPiece, ...]
     labels: tuple[Label, ...]
     references: dict[str, Array]
     size: float
@@ -115,7 +115,7 @@ def _joints(assembly: Assembly, ends: Mapping[str, _Ends]) -> dict[str, list[Arr
     return joints
 
 
-def _body(body: PlacedBody, joints: list[Array], size: float) -> Iterator[Piece]:
+def _body(body: PlacedBody, joints: list[Array], size: float) -> Iterator[DrawnPiece]:
     """A body's outlines, or bars between its joints, and lines from joints that lie off the outlines to their nearest box point."""
     kind = Kind.PLATFORM if body.name == PLATFORM else Kind.BODY
     solids = _solids(body.solids, kind, body.name)
@@ -126,14 +126,16 @@ def _body(body: PlacedBody, joints: list[Array], size: float) -> Iterator[Piece]
         nearest = [np.clip(joint, points.min(axis=0), points.max(axis=0)) for joint in joints]
         skins = [line(np.stack(ends)) for ends in zip(joints, nearest, strict=True) if np.max(np.abs(ends[0] - ends[1])) > 0.01 * size]
     if skins:
-        yield Piece(body.name, kind, (body.name, body.name), join(skins))
+        yield DrawnPiece(body.name, kind, (body.name, body.name), join(skins))
 
 
-def _solids(solids: Mapping[str, PlacedSolid], kind: Kind, body: str) -> list[Piece]:
-    return [Piece(name, kind, (body, body), solid_skin(placed.solid).placed(first_frame(placed.frame))) for name, placed in solids.items()]
+def _solids(solids: Mapping[str, PlacedSolid], kind: Kind, body: str) -> list[DrawnPiece]:
+    return [
+        DrawnPiece(name, kind, (body, body), solid_skin(placed.solid).placed(first_frame(placed.frame))) for name, placed in solids.items()
+    ]
 
 
-def _bars(joints: Sequence[Array], thickness: float) -> list[Skin]:
+def _bars(joints: Sequence[Array], thickness: float) -> list[DrawnSurface]:
     """Bars between all pairs of up to four joints, else from their middle to each."""
     if len(joints) > 4:
         middle = np.mean(joints, axis=0)
@@ -141,50 +143,50 @@ def _bars(joints: Sequence[Array], thickness: float) -> list[Skin]:
     return _drawn_bars(itertools.combinations(joints, 2), thickness)
 
 
-def _drawn_bars(ends: Iterable[tuple[Array, Array]], thickness: float) -> list[Skin]:
+def _drawn_bars(ends: Iterable[tuple[Array, Array]], thickness: float) -> list[DrawnSurface]:
     """Bars of a square section; none between points that are one."""
     return [_bar(first, second, thickness) for first, second in ends if np.linalg.norm(second - first) >= 1e-9]
 
 
-def _bar(first: Array, second: Array, thickness: float) -> Skin:
+def _bar(first: Array, second: Array, thickness: float) -> DrawnSurface:
     reach = second - first
     rings = extrude(np.array([0.0, float(np.linalg.norm(reach))]), [rectangle(thickness, thickness)] * 2)
     return loft(rings).placed(Frame(axes(reach), first))
 
 
-def _link(link: PlacedLink, skin: Skin, ends: _Ends, size: float) -> Iterator[Piece]:
+def _link(link: PlacedLink, skin: DrawnSurface, ends: _Ends, size: float) -> Iterator[DrawnPiece]:
     frame = first_frame(link.frame)
-    yield Piece(link.name, Kind.DRIVE if is_actuator(link.part) else Kind.HINGE, link.joins, skin.placed(frame))
+    yield DrawnPiece(link.name, Kind.DRIVE if is_actuator(link.part) else Kind.HINGE, link.joins, skin.placed(frame))
     if GROUND in link.joins:
         begins = link.joins[0] == GROUND
         foot = _foot(part_section(link.part), -1.0 if begins else 1.0, _MARKER * size)
-        yield Piece(f"{link.name} foot", Kind.GROUND, _GROUNDED, foot.placed(Frame(frame.rotation, ends[0] if begins else ends[1])))
+        yield DrawnPiece(f"{link.name} foot", Kind.GROUND, _GROUNDED, foot.placed(Frame(frame.rotation, ends[0] if begins else ends[1])))
 
 
-def _foot(section: tuple[float, float], outward: float, depth: float) -> Skin:
+def _foot(section: tuple[float, float], outward: float, depth: float) -> DrawnSurface:
     """A block of ground behind the end of a link, outward along its x axis or against it, somewhat larger than the link's section."""
     stations = (0.0, depth) if outward > 0.0 else (-depth, 0.0)
     height, width = (max(1.15 * extent, 1.6 * depth) for extent in section)
     return loft(extrude(np.array(stations), [rectangle(height, width)] * 2))
 
 
-def _superelement(element: PlacedSuperelement, size: float) -> Iterator[Piece]:
+def _superelement(element: PlacedSuperelement, size: float) -> Iterator[DrawnPiece]:
     """Bars between its ports: between all of up to four, else from the first to each; they bend with the bodies there."""
     ports = list(element.ports.values())
     pairs = itertools.combinations(ports, 2) if len(ports) <= 4 else ((ports[0], port) for port in ports[1:])
     for one, other in pairs:
         for bar in _drawn_bars([(_first(one.frame.position), _first(other.frame.position))], _MARKER * size):
-            yield Piece(element.name, Kind.HINGE, (one.body, other.body), bar)
+            yield DrawnPiece(element.name, Kind.HINGE, (one.body, other.body), bar)
 
 
-def _gauge(name: str, sight: Sight, size: float) -> Piece:
+def _gauge(name: str, sight: Sight, size: float) -> DrawnPiece:
     """An arrow along the measuring direction, its tip at the measured point."""
     tip, head, shaft = 0.0, -0.35 * _ARROW * size, -_ARROW * size
     thick, thin, none = circle(0.022 * size, 10), circle(0.008 * size, 10), circle(1e-4 * size, 10)
     arrow = [
         loft(extrude(np.array(ends), rings), along=ROUND) for ends, rings in (((head, tip), [thick, none]), ((shaft, head), [thin] * 2))
     ]
-    return Piece(name, Kind.GAUGE, (sight.base, sight.base), join(arrow).placed(first_frame(sight.frame)))
+    return DrawnPiece(name, Kind.GAUGE, (sight.base, sight.base), join(arrow).placed(first_frame(sight.frame)))
 
 
 def _sights(assembly: Assembly) -> Iterator[tuple[str, Sight]]:

@@ -1,8 +1,8 @@
-"""The first page of a report: verdicts on the requirements, and the stage in a few numbers and sentences."""
+"""The first page of a report: verdicts on the requirements, and the stage in a few numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from flexstage.show.display import format_value, number, percent
 from flexstage.show.page import Fact, Facts, Headline, Prose, Section, section
 from flexstage.show.table import first_design, result_table
 from flexstage.show.tables.change import set_table
+from flexstage.show.tables.overview import axis_table, count_text
 from flexstage.show.tables.requirements import is_met, verdict_table, verdict_text
 
 _SILENT = 1e-9
@@ -60,19 +61,19 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
 
 
 def summary_section(analysis: Analysis) -> Section | None:
-    """The stage in a few numbers and sentences.
+    """The stage in a few numbers, and its platform axis by axis.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> [fact.name for fact in summary_section(analyse(double_triangle(), Model.IDEAL)).blocks[0].items]
     ['Freedoms', 'Stroke along x']
     """
-    return section("Summary", [Facts(tuple(_facts(analysis))), *(Prose(text) for text in _sentences(analysis))])
+    return section("Summary", [Facts(tuple(_facts(analysis))), axis_table(analysis)])
 
 
 def _facts(analysis: Analysis) -> Iterator[Fact]:
     kinematics = analysis.kinematics
-    driven = f"{_count_text(len(kinematics.actuators), 'actuator')}, {_count_text(len(kinematics.gauges), 'gauge')}"
+    driven = f"{count_text(len(kinematics.actuators), 'actuator')}, {count_text(len(kinematics.gauges), 'gauge')}"
     yield Fact("Freedoms", str(kinematics.mobility), driven)
     if analysis.modes is not None and analysis.modes.platform:
         index = analysis.modes.platform[0]
@@ -91,10 +92,6 @@ def _facts(analysis: Analysis) -> Iterator[Fact]:
     yield from _reach_facts(analysis)
 
 
-def _count_text(count: int, thing: str) -> str:
-    return f"{count} {thing}{'' if count == 1 else 's'}"
-
-
 def _zero_if_noise(share: float) -> float:
     return 0.0 if abs(share) < _SILENT else share
 
@@ -111,56 +108,3 @@ def _reach_facts(analysis: Analysis) -> Iterator[Fact]:
     if stress is not None and stress.links:
         least = float(first_design(np.atleast_1d(stress.min_safety), 1)[0])
         yield Fact("Least safety factor", number(least, 3), f"against yield, in {stress.weakest}")
-
-
-def _sentences(analysis: Analysis) -> Iterator[str]:
-    if analysis.modes is not None and analysis.modes.platform:
-        yield _mode_sentence(analysis)
-    if analysis.lost_motion is not None:
-        yield _loss_sentence(analysis)
-    if analysis.workspace is not None and analysis.workspace.worst_case is not None:
-        scale = float(first_design(np.atleast_1d(analysis.workspace.worst_case.scale), 1)[0])
-        reached = "can be reached at once" if scale >= 1.0 else f"cannot all be reached at once: at most {percent(scale, 3)} of the box can"
-        yield f"The commanded strokes {reached}."
-
-
-def _mode_sentence(analysis: Analysis) -> str:
-    modes = analysis.modes
-    if modes is None:
-        return ""
-    frequencies = first_design(modes.frequencies, 1)
-    listed = [f"{name} at {' and '.join(values)} Hz" for name, values in _by_name(analysis, [float(value) for value in frequencies])]
-    text = f"The platform's modes are {_join_words(listed)}."
-    if modes.local:
-        lowest = min(float(frequencies[index]) for index in modes.local)
-        text += f" {len(modes.local)} modes of single units lie below 1.5 times the highest of them, the lowest at {number(lowest, 4)} Hz."
-    return text
-
-
-def _by_name(analysis: Analysis, frequencies: list[float]) -> list[tuple[str, list[str]]]:
-    modes = analysis.modes
-    result: dict[str, list[str]] = {}
-    for index in () if modes is None else modes.platform:
-        text = number(frequencies[index], 4)
-        if modes is not None and text not in result.setdefault(modes.names[index], []):
-            result[modes.names[index]].append(text)
-    return list(result.items())
-
-
-def _join_words(items: Sequence[str]) -> str:
-    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
-
-
-def _loss_sentence(analysis: Analysis) -> str:
-    lost = analysis.lost_motion
-    if lost is None:
-        return ""
-    loss = first_design(lost.loss.values, 2)
-    own = np.abs(np.diagonal(loss))
-    others = np.abs(loss - np.diag(np.diagonal(loss)))
-    if max(own.max(), others.max(initial=0.0)) < _SILENT:
-        return "In this model the actuators lose no motion: its springs lie in line with the strokes."
-    range_text = f"{percent(float(own.min()), 3)} to {percent(float(own.max()), 3)}" if np.ptp(own) > 1e-4 else percent(float(own.max()), 3)
-    taken = f"Elasticity takes {range_text} of the actuators' strokes"
-    stirred = float(others.max(initial=0.0))
-    return f"{taken}, and up to {percent(stirred, 3)} of a stroke appears as another's." if stirred > _SILENT else f"{taken}."

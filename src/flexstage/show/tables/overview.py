@@ -35,10 +35,10 @@ def stage_text(analysis: Analysis) -> str:
     'double triangle, ideal model: 6 freedoms (x, y, z, rx, ry, rz), 6 actuators, 6 gauges'
     """
     found = analysis.kinematics
-    free = f"{_count(found.mobility, 'freedom')} ({', '.join(found.coordinates)})" if found.coordinates else "no freedoms"
-    driven = [_count(len(found.actuators), "actuator")] if found.actuators or not found.thrusts else []
-    forced = [_count(len(found.thrusts), "force actuator")] if found.thrusts else []
-    things = ", ".join([free, *driven, *forced, _count(len(found.gauges), "gauge")])
+    free = f"{count_text(found.mobility, 'freedom')} ({', '.join(found.coordinates)})" if found.coordinates else "no freedoms"
+    driven = [count_text(len(found.actuators), "actuator")] if found.actuators or not found.thrusts else []
+    forced = [count_text(len(found.thrusts), "force actuator")] if found.thrusts else []
+    things = ", ".join([free, *driven, *forced, count_text(len(found.gauges), "gauge")])
     return f"{analysis.mechanism.name or 'stage'}, {analysis.model.value} model: {things}"
 
 
@@ -64,7 +64,12 @@ def small_line(analysis: Analysis) -> str | None:
     return None if analysis.second_order is None else analysis.second_order.text
 
 
-def _count(count: int, thing: str) -> str:
+def count_text(count: int, thing: str) -> str:
+    """How many there are of a thing.
+
+    >>> count_text(2, "gauge")
+    '2 gauges'
+    """
     return f"{count} {thing}{'' if count == 1 else 's'}"
 
 
@@ -167,11 +172,10 @@ def _shown(value: float, name: str, units: tuple[str, ...]) -> str:
 
 
 def _platform_modes(modes: Modes) -> Table | None:
-    near = [modes.mode(index).frequency for index in sorted(modes.local)[:1]]
-    notes = [
-        f"{_count(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {number(each, _DIGITS)} Hz."
-        for each in near
-    ]
+    notes: list[str] = []
+    if modes.local:
+        lowest = number(modes.mode(min(modes.local)).frequency, _DIGITS)
+        notes = [f"{count_text(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {lowest} Hz."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
     return None if table is None else merge_rows(table)

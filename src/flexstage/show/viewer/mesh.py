@@ -10,8 +10,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND
-from flexstage.show.scene.skin import Skin, join
-from flexstage.show.scene.stage import Piece
+from flexstage.show.scene.skin import DrawnSurface, join
+from flexstage.show.scene.stage import DrawnPiece
 from flexstage.show.viewer.bend import COLUMNS, Bend
 
 
@@ -67,7 +67,7 @@ class Mesh:
 
 
 def mesh_of(
-    pieces: Sequence[Piece], bodies: Mapping[str, int], parts: Mapping[str, int], bends: Mapping[str, Bend], straight: Bend
+    pieces: Sequence[DrawnPiece], bodies: Mapping[str, int], parts: Mapping[str, int], bends: Mapping[str, Bend], straight: Bend
 ) -> Mesh:
     """The mesh of pieces, with the numbers of bodies and parts by name; `bends` are those of parts that are not `straight`.
 
@@ -97,11 +97,11 @@ def _single(values: Array) -> Array:
     return values.astype(np.float32).astype(float) + 0.0
 
 
-def _rounded(skin: Skin) -> Skin:
+def _rounded(skin: DrawnSurface) -> DrawnSurface:
     return replace(skin, points=_single(skin.points))
 
 
-def _carrier(piece: Piece, bodies: Mapping[str, int]) -> Array:
+def _carrier(piece: DrawnPiece, bodies: Mapping[str, int]) -> Array:
     """The bodies of a piece by number, and where it meets them (8,): the middles of its first and its last ring; zeros if rigid."""
     first, second = (bodies[name] for name in piece.bodies)
     share = piece.skin.share
@@ -109,7 +109,7 @@ def _carrier(piece: Piece, bodies: Mapping[str, int]) -> Array:
     return _single(np.array([first, second, *ends]))
 
 
-def _stations(piece: Piece, bend: Bend) -> Array:
+def _stations(piece: DrawnPiece, bend: Bend) -> Array:
     """Rows (k, 5) of a piece's bend at its points; zeros where it is rigid."""
     first, second = piece.bodies
     return np.zeros((len(piece.skin.share), COLUMNS)) if first == second else _single(bend.at(piece.skin.share))
