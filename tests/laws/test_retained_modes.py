@@ -88,8 +88,9 @@ def _spring(random, mass, frequency, soft=()):
 
 def _figures(closed):
     """Peaks of S and T, and every margin of one loop at a time."""
-    high, found = peaks(closed, LoopBreak.POSE), margins(closed, LoopBreak.POSE, curves(closed, LoopBreak.POSE)).table.values
-    return np.array([high.sensitivity.value, high.complementary.value, *np.asarray(found).ravel()])
+    high, loops = peaks(closed, LoopBreak.POSE), margins(closed, LoopBreak.POSE, curves(closed, LoopBreak.POSE)).channels
+    edges = (getattr(each, kind) for each in loops for kind in ("gain_low", "gain_high", "phase", "delay", "disk"))
+    return np.array([high.sensitivity.value, high.complementary.value, *(edge.value for edge in edges)])
 
 
 def _check(stage, setup=None):

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -35,14 +34,13 @@ from flexstage.control.show import tables
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, Following
-from flexstage.control.study.compare import compare_controllers
+from flexstage.control.study.compare import Comparison, compare_controllers
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.objective import TuningObjective
 from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
 from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
-from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, write_answer
 from flexstage.show.command.design import open_design
@@ -71,7 +69,6 @@ from flexstage.show.command.values import Values
 from flexstage.show.table import Table
 
 if TYPE_CHECKING:
-    from flexstage.analysis.dynamics.solid_modes import FeaModes
     from flexstage.control.show import report as pages
 else:
     pages = Late("flexstage.control.show.report")  # figures, scenes and sections: thirty modules
@@ -241,85 +238,58 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=True) if fea else None
     stands = Footing(mechanism, asked.model) if fea else footing(mechanism, where, asked.model)
-    asking = _Asking(mechanism, asked, stands, solid, tuple(record or ()), texts, None if fea else asked.model)
-    written_to = _Written(json, csv, xlsx, report, tuple(exports), hardware, Precision.SINGLE if float32 else Precision.DOUBLE)
     if compare:
-        _compare(asking, written_to)
-    else:
-        _close(asking, written_to)
-
-
-@dataclass(frozen=True)
-class _Asking:
-    """What a loop is closed on: the stage, what is asked, where it stands, its finite elements, records of a test, the model told of."""
-
-    mechanism: Mechanism
-    asked: forms.LoopSetup
-    stands: Footing
-    solid: FeaModes | None
-    record: tuple[Path, ...]
-    texts: RecordTexts
-    model: Model | None
-
-    def test(self, tell: Told) -> Identification | None:
-        """The modes of the records, all of one test."""
-        if not self.record:
-            return None
-        reader = self.texts.options()
-        return identification(usable_measurement(open_records(self.record, reader), reader.accept_faults, told=tell), told=tell)
-
-
-@dataclass(frozen=True)
-class _Written:
-    """Where results go."""
-
-    json: str | None
-    csv: Path | None
-    xlsx: Path | None
-    report: Path | None
-    exports: tuple[Path, ...]
-    hardware: Path | None
-    precision: Precision
-
-
-def _compare(asking: _Asking, outputs: _Written) -> None:
-    """Controllers side by side."""
-    mechanism, asked, stands = asking.mechanism, asking.asked, asking.stands
-    _require_comparable(asked, {"--export": bool(outputs.exports), "--hardware": outputs.hardware is not None})
+        _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
     with progress_bar() as shown:
-        test = asking.test(shown.share)
-        there = stands.operating_point
-        rivals = compare_controllers(mechanism, asked, there=there, solid=asking.solid, test=test, tell=shown.share, workers=cores())
-    found = CommandResult(
-        mechanism,
+        on: dict[str, Any] = {
+            "there": stands.operating_point,
+            "solid": solid,
+            "test": _identified(record, texts, shown.share),
+            "tell": shown.share,
+        }
+        rivals = compare_controllers(mechanism, asked, workers=cores(), **on) if compare else None
+        found = None if compare else loop_study(mechanism, asked, **on)
+    told, documents = None if fea else asked.model, {"json": json, "xlsx": xlsx, "report": report}
+    if rivals is not None:
+        write_answer("loops", _compared(rivals, asked, stands, told), documents, csv)
+    if found is not None:
+        for target in exports:
+            write_export(found, target)
+        if hardware is not None:
+            write_hardware(found, hardware, Precision.SINGLE if float32 else Precision.DOUBLE)
+        write_answer("loop", _closed(found, stands, told), documents, csv)
+
+
+def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Identification | None:
+    """The modes of the records, all of one test."""
+    if not record:
+        return None
+    reader = texts.options()
+    return identification(usable_measurement(open_records(record, reader), reader.accept_faults, told=tell), told=tell)
+
+
+def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model: Model | None) -> CommandResult:
+    """Controllers side by side."""
+    return CommandResult(
+        stands.mechanism,
         lambda: rivals,
         lambda: [*stands.tables(), *tables.comparison_tables(rivals)],
-        lambda: pages.comparison_report(mechanism, asked, rivals),
-        asking.model,
+        lambda: pages.comparison_report(stands.mechanism, asked, rivals),
+        model,
         (*stands.warnings, *rivals.warnings),
     )
-    write_answer("loops", found, vars(outputs), outputs.csv)
 
 
-def _close(asking: _Asking, outputs: _Written) -> None:
-    """One loop, and the files of it that are asked for."""
-    stands = asking.stands
-    with progress_bar() as shown:
-        test = asking.test(shown.share)
-        found = loop_study(asking.mechanism, asking.asked, there=stands.operating_point, solid=asking.solid, test=test, tell=shown.share)
-    for target in outputs.exports:
-        write_export(found, target)
-    if outputs.hardware is not None:
-        write_hardware(found, outputs.hardware, outputs.precision)
-    closed = CommandResult(
-        asking.mechanism,
+def _closed(found: LoopStudy, stands: Footing, model: Model | None) -> CommandResult:
+    """One loop."""
+    return CommandResult(
+        stands.mechanism,
         lambda: stands.body(found) if stands.operating_point is not None else found,
         lambda: [*stands.tables(), *_tables(found)],
         lambda: pages.loop_report(found),
-        asking.model,
+        model,
         (*stands.warnings, *found.warnings),
     )
-    write_answer("loop", closed, vars(outputs), outputs.csv)
 
 
 def _fea_findings(where: Place, model: Model | None) -> Iterator[Finding]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 
@@ -17,17 +16,6 @@ from flexstage.spatial.frame import COMPONENTS
 _DEPENDENT = 1e-6
 
 
-class Structure(Enum):
-    """Coordinates of decentralised control."""
-
-    ACTUATOR = "actuator"
-    """One loop for each actuator, on its part R_a e of the error."""
-    PLATFORM = "platform"
-    """One loop for each motion of the platform, its command made strokes by R_a."""
-    MODAL = "modal"
-    """One loop for each mode of the platform."""
-
-
 @dataclass(frozen=True, eq=False)
 class Loops:
     """k single loops: their errors are `sense` (k, f) times those of the coordinates, strokes `drive` (n, k) times their commands.
@@ -35,7 +23,6 @@ class Loops:
     All loops are in metres: at rest a loop's pose is its command, but for lost motion.
     """
 
-    structure: Structure
     names: tuple[str, ...]
     sense: Array
     drive: Array
@@ -58,7 +45,7 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
     if actuators > motions:
         what = f"{actuators} actuators move {motions} coordinates: {actuators - motions} of their integrators would see no error"
         raise refuse("actuator coordinates", what, "Close the loops in platform or modal coordinates")
-    return Loops(Structure.ACTUATOR, coordinates.actuators, coordinates.strokes, np.eye(actuators), coordinates)
+    return Loops(coordinates.actuators, coordinates.strokes, np.eye(actuators), coordinates)
 
 
 @check_arguments
@@ -75,7 +62,7 @@ def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Lo
     (('x', 'y', 'z', 'rx', 'ry', 'rz'), [1.0, 1.0, 1.0, 0.1443, 0.1443, 0.1443])
     """
     drive = coordinates.strokes if strokes is None else strokes
-    return Loops(Structure.PLATFORM, coordinates.names, np.diag(coordinates.scale), drive / coordinates.scale, coordinates)
+    return Loops(coordinates.names, np.diag(coordinates.scale), drive / coordinates.scale, coordinates)
 
 
 def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
@@ -139,4 +126,4 @@ def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None =
         raise refuse("modal coordinates", f"{what} of the largest", "Take other modes, or close the loops in platform coordinates")
     drive = coordinates.strokes if strokes is None else strokes
     names = tuple(f"mode{number + 1}" for number in range(len(rows)))
-    return Loops(Structure.MODAL, names, np.linalg.inv(scaled) * coordinates.scale, drive / coordinates.scale @ scaled, coordinates)
+    return Loops(names, np.linalg.inv(scaled) * coordinates.scale, drive / coordinates.scale @ scaled, coordinates)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import with_feedforward
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
-_DIRECT = 1e-12
 DOUBLINGS, _SETTLED = 30, 1e-15
 """Rounds of doubling, 2^30 samples: a day at 10 kHz; and what the last may still add, a rounding."""
 
@@ -67,10 +66,9 @@ class LQG:
         Raises `DesignError` for another step than the model's.
         """
         if step != self.model.step:
-            model, asked = (("continuous" if each is None else f"sampled every {each:g} s") for each in (self.model.step, step))
+            model, asked = ("continuous" if each is None else f"sampled every {each:g} s" for each in (self.model.step, step))
             raise refuse("LQG", f"its model is {model}, and the controller is to be {asked}", "Design it on a model sampled alike")
-        found = _continuous_system(self) if step is None else _sampled_system(self)
-        return with_feedforward_states(found, self)
+        return with_feedforward_states(_sampled_system(self), self)
 
 
 def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances, feedforward: Array | None = None) -> LQG:
@@ -87,7 +85,6 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
     >>> found.regulator.shape, found.integral.round(0).tolist()  # 2 pi 20
     ((1, 8), [[125.0]])
     """
-    require(_findings(model, coordinates, weights, expected))
     return with_observer(model, coordinates, weights, observer_gain(model, coordinates, expected), feedforward)
 
 
@@ -109,25 +106,21 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
     """K (n, s) and K_z (n, f)."""
     states, count = len(model.A), len(model.outputs)
     scale = np.diag(coordinates.scale)
-    sampled = model.step is not None
-    step = 1.0 if model.step is None else model.step
-    A = np.block([[model.A, np.zeros((states, count))], [-step * scale @ model.C, np.eye(count) * sampled]])
+    step = _step(model)
+    A = np.block([[model.A, np.zeros((states, count))], [-step * scale @ model.C, np.eye(count)]])
     B = np.vstack([model.B, -step * scale @ model.D])
     seen, rates = scale @ model.C, 2.0 * np.pi * np.broadcast_to(weights.bandwidth, (count,))
     direct, poses = scale @ model.D, np.broadcast_to(weights.pose, (count,))[:, None]
     cross = np.vstack([seen.T @ (poses * direct), np.zeros((count, len(model.inputs)))])
     cost = np.asarray(scipy.linalg.block_diag(seen.T @ (poses * seen), np.diag(rates**2)))
     effort = np.eye(len(model.inputs)) + direct.T @ (poses * direct)
-    solution = _riccati(A, B, cost, effort, cross, sampled=sampled)
-    if sampled:
-        gain = np.linalg.solve(effort + B.T @ solution @ B, B.T @ solution @ A + cross.T)
-    else:
-        gain = np.linalg.solve(effort, B.T @ solution + cross.T)
+    solution = _riccati(A, B, cost, effort, cross)
+    gain = np.linalg.solve(effort + B.T @ solution @ B, B.T @ solution @ A + cross.T)
     return gain[:, :states], -gain[:, states:] @ scale
 
 
 def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
-    """M (s, f) of the sampled filter, L of the continuous one; where D feels the strokes' noise, noises of state and output go together.
+    """Gain M (s, f) of the Kalman filter; where D passes the strokes' noise on, noises of state and output are correlated.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -143,12 +136,10 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
     state, cross = entry @ entry.T, entry @ (D * expected.strokes).T
     output = pose @ pose.T + expected.strokes**2 * D @ D.T
     # Of the order 1e-20 m^2: made numbers of order one, which the solver's tolerances need. Only ratios of noises count, so that
-    # densities stand for the intensities G^2/2 of a continuous model and the variances G^2/(2 T) of a sampled one.
+    # densities stand for the variances G^2/(2 T).
     unit = np.trace(output) / len(output)
     state, output, cross = state / unit, output / unit, cross / unit
-    solution = _riccati(model.A.T, C.T, state, output, cross, sampled=model.step is not None)
-    if model.step is None:
-        return np.linalg.solve(output, C @ solution + cross.T).T @ weight
+    solution = _riccati(model.A.T, C.T, state, output, cross)
     return np.linalg.solve(output + C @ solution @ C.T, C @ solution).T @ weight
 
 
@@ -164,20 +155,23 @@ def estimator(model: System, observer: Array) -> System:
     states = len(model.A)
     inputs = (*model.outputs, *model.inputs)
     outputs = tuple(Channel(f"state.{number}", "1") for number in range(states))
-    if model.step is None:
-        entry = np.hstack([observer, model.B - observer @ model.D])
-        return System(model.A - observer @ model.C, entry, np.eye(states), np.zeros(entry.shape), inputs, outputs)
     correct = np.eye(states) - observer @ model.C
     direct = np.hstack([observer, np.zeros((states, len(model.inputs)))])
     return System(model.A @ correct, np.hstack([model.A @ observer, model.B]), correct, direct, inputs, outputs, model.step)
 
 
-def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array, *, sampled: bool) -> Array:
-    if sampled and (doubled := _doubled(A, B, cost, effort, cross)) is not None:
+def _step(model: System) -> float:
+    if model.step is None:
+        raise refuse("LQG", "its model is continuous", "State a rate: linear-quadratic control is sampled")
+    return model.step
+
+
+def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Array:
+    if (doubled := _doubled(A, B, cost, effort, cross)) is not None:
         return doubled
     try:
         with np.errstate(invalid="ignore"):  # of weights out of all proportion, whose solution is not finite
-            found = (scipy.linalg.solve_discrete_are if sampled else scipy.linalg.solve_continuous_are)(A, B, cost, effort, s=cross)
+            found = scipy.linalg.solve_discrete_are(A, B, cost, effort, s=cross)
         if not np.all(np.isfinite(found)):
             raise np.linalg.LinAlgError
     except np.linalg.LinAlgError as error:
@@ -217,7 +211,7 @@ def _sampled_system(control: LQG) -> System:
     model, M, K, Z = control.model, control.observer, control.regulator, control.integral
     states, count = len(model.A), len(model.outputs)
     width = len(model.inputs)
-    step = float(model.step or 0.0)
+    step = _step(model)
     correct = np.eye(states) - M @ model.C
     output = np.hstack([-K @ correct, Z])
     direct = np.hstack([np.zeros((width, count)), -K @ M, np.zeros((width, width))])
@@ -228,18 +222,6 @@ def _sampled_system(control: LQG) -> System:
     A = np.vstack([model.A @ filtered + model.B @ output, np.hstack([np.zeros((count, states)), np.eye(count)])])
     B = np.vstack([model.A @ entered + model.B @ (direct + applied), step * error])
     return System(A, B, output, direct, *_ports(control), model.step)
-
-
-def _continuous_system(control: LQG) -> System:
-    model, L, K, Z = control.model, control.observer, control.regulator, control.integral
-    states, count, width = len(model.A), len(model.outputs), len(model.inputs)
-    output = np.hstack([-K, Z])
-    entry = model.B - L @ model.D
-    seen = np.hstack([model.A - L @ model.C, np.zeros((states, count))])
-    A = np.vstack([seen + entry @ output, np.zeros((count, states + count))])
-    error = np.hstack([np.eye(count), np.zeros((count, count)), np.linalg.pinv(Z) / control.tracking])
-    B = np.vstack([np.hstack([np.zeros((states, count)), L, entry]), error])
-    return System(A, B, output, np.zeros((width, 2 * count + width)), *_ports(control))
 
 
 def with_feedforward_states(control: System, given: LQG) -> System:
@@ -255,14 +237,13 @@ def with_feedforward_states(control: System, given: LQG) -> System:
     if given.feedforward is None:
         return control
     model = given.model
-    rest = -model.A if model.step is None else np.eye(len(model.A)) - model.A
-    states = np.linalg.solve(rest, model.B)
+    states = np.linalg.solve(np.eye(len(model.A)) - model.A, model.B)
     gain = (np.eye(len(model.inputs)) + given.regulator @ states) @ given.feedforward
     found = with_feedforward(control, gain, given.coordinates)
     columns = [number for number, name in enumerate(found.input_names) if name.startswith("reference.")]
     entry = found.B.copy()
     # the observer knows the whole command
-    entry[: len(model.A), columns] += (model.B if model.step is not None else model.B - given.observer @ model.D) @ gain
+    entry[: len(model.A), columns] += model.B @ gain
     return System(found.A, entry, found.C, found.D, found.inputs, found.outputs, found.step)
 
 
@@ -270,30 +251,3 @@ def _ports(control: LQG) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
     coordinates = control.coordinates
     inputs = (*coordinates.motions("error."), *coordinates.motions("pose."), *coordinates.commands("applied."))
     return inputs, coordinates.commands("command.")
-
-
-def _findings(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances) -> Iterator[Finding]:
-    wanted = np.atleast_1d(weights.bandwidth)
-    if len(wanted) not in (1, len(coordinates.names)):
-        yield Finding("LQG", f"{len(wanted)} bandwidths for {len(coordinates.names)} coordinates", "Give one for all, or one for each")
-    if not 0.0 < np.min(wanted) <= np.max(wanted) < np.inf:
-        yield Finding("LQG", f"its bandwidth is {np.min(wanted):g} Hz", "Give a positive one")
-    elif model.step is not None and np.max(wanted) >= 0.5 / model.step:
-        what = f"its bandwidth of {np.max(wanted):g} Hz is not below half the sampling rate, {0.5 / model.step:g} Hz"
-        yield Finding("LQG", what, "Sample faster, or ask for less")
-    poses = np.atleast_1d(weights.pose)
-    if len(poses) not in (1, len(coordinates.names)):
-        yield Finding(
-            "LQG", f"{len(poses)} weights of the pose for {len(coordinates.names)} coordinates", "Give one for all, or one for each"
-        )
-    if not 0.0 <= np.min(poses) <= np.max(poses) < np.inf:
-        yield Finding("LQG", f"the weight of the pose is {np.min(poses):g}", "Give 0 or more")
-    if not 0.0 < expected.strokes < np.inf:
-        yield Finding("LQG", f"the strokes' noise is {expected.strokes:g} m/Hz^(1/2)", "State a positive density: what disturbs the stage")
-    for name in coordinates.gauges:
-        if not 0.0 < expected.gauges.get(name, 0.0) < np.inf:
-            what = "its noise density is not stated" if name not in expected.gauges else f"its noise density is {expected.gauges[name]:g}"
-            yield Finding(name, f"{what}: a gauge without noise would be trusted without limit", "State its noise density")
-    if model.step is not None and np.max(np.abs(model.D), initial=0.0) > _DIRECT:
-        what = f"the sampled model answers a command within the same sample (up to {np.max(np.abs(model.D)):.3g})"
-        yield Finding("LQG", what, "Give the loop a delay, or read the gauges before commanding")

@@ -12,7 +12,7 @@ from flexstage.control.hysteresis.branches import MAJOR, branches_of, record_fin
 from flexstage.control.hysteresis.fit import Fit, drift_of, fit_form, form_of, known_from, play_outputs
 from flexstage.control.hysteresis.models.inverse import inverse_findings
 from flexstage.control.hysteresis.models.shape import Range, major_loop
-from flexstage.control.hysteresis.result import IdentifiedHysteresis, SizeTrial
+from flexstage.control.hysteresis.result import IdentifiedHysteresis, Trial
 
 _PLAYS = (2, 4, 8, 16, 32)
 _PIECES = (2, 4, 8)
@@ -71,9 +71,9 @@ class _Search:
         self.range = float(np.min(volts)), float(np.max(volts))
         self.branches = branches_of(volts)
         self.size = float(np.ptp(strokes[self.branches[0].stop :]))
-        self.trials: list[SizeTrial] = []
+        self.trials: list[Trial] = []
 
-    def best(self) -> SizeTrial:
+    def best(self) -> Trial:
         """Plays first, with a straight envelope; then its pieces; then plays again; then the reach."""
         chosen = self._pick((plays, 1, _REACHES[0]) for plays in _PLAYS)
         bent = self._pick((chosen.plays, pieces, _REACHES[0]) for pieces in (1, *_PIECES))
@@ -82,18 +82,18 @@ class _Search:
         near, far = (self._trial(bent.plays, bent.pieces, reach) for reach in _REACHES)
         return far if far.error < _FARTHER * near.error - 1e-9 else near
 
-    def fit(self, trial: SizeTrial) -> Fit:
+    def fit(self, trial: Trial) -> Fit:
         """The fit of a size on the whole record."""
         form = form_of(self.range, trial.plays, trial.pieces, reach=trial.reach)
         return fit_form(self.volts, self.strokes, form, np.full(len(self.volts), fill_value=True))
 
-    def _pick(self, sizes: Iterable[tuple[int, int, float]]) -> SizeTrial:
+    def _pick(self, sizes: Iterable[tuple[int, int, float]]) -> Trial:
         """The first of the sizes, smallest first, that is about as good as the best."""
         tried = [self._trial(*size) for size in sizes]
         least = min(trial.error for trial in tried)
         return next(trial for trial in tried if trial.error <= _WORTH * least + 1e-9)
 
-    def _trial(self, plays: int, pieces: int, reach: float) -> SizeTrial:
+    def _trial(self, plays: int, pieces: int, reach: float) -> Trial:
         for trial in self.trials:
             if (trial.plays, trial.pieces, trial.reach) == (plays, pieces, reach):
                 return trial
@@ -106,7 +106,7 @@ class _Search:
             fit = fit_form(self.volts, self.strokes, form, ~kept, rounds=_ROUNDS)
             error = fit.strokes(play_outputs(fit.effective(self.volts), form.thresholds)) - self.strokes
             squares += float(np.sum(error[kept] ** 2))
-        self.trials.append(SizeTrial(plays, pieces, reach, float(np.sqrt(squares / np.sum(known))) / self.size))
+        self.trials.append(Trial(plays, pieces, reach, float(np.sqrt(squares / np.sum(known))) / self.size))
         return self.trials[-1]
 
     def _folds(self, known: Array) -> Array:
@@ -120,7 +120,7 @@ class _Search:
         return fold
 
 
-def _assess(search: _Search, best: SizeTrial, limits: Range | None) -> IdentifiedHysteresis:
+def _assess(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHysteresis:
     fit = search.fit(best)
     effective = fit.effective(search.volts)
     plays = play_outputs(effective, fit.form.thresholds)

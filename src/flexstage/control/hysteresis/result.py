@@ -19,7 +19,7 @@ SMALL_ERROR = Graded(0.02)
 
 
 @dataclass(frozen=True)
-class SizeTrial:
+class Trial:
     """A size of model that was tried: `plays`, `pieces` of the envelope, `reach` of the thresholds (part of the range), and its error.
 
     `error` is the rms error on the parts of the record that were kept from the fit, each once, as a part of the stroke.
@@ -68,7 +68,7 @@ class IdentifiedHysteresis(InNotebook):
     branches: int
     inner: Annotated[int, Heading("inner branches")]
     known_from: int
-    trials: tuple[SizeTrial, ...]
+    trials: tuple[Trial, ...]
     warnings: Annotated[tuple[Finding, ...], INNER]
     volts: Array
     strokes: Array

@@ -76,14 +76,6 @@ class Margins(InNotebook):
         """Those of the channel of that name."""
         return self.loops[channel]
 
-    @property
-    def table(self) -> Matrix:
-        """Rows are the channels."""
-        kinds = ("gain_low", "gain_high", "phase", "delay", "disk")
-        values = np.array([[getattr(each, kind).value for kind in kinds] for each in self.channels])
-        rows = tuple(each.channel for each in self.channels)
-        return Matrix(values, rows, kinds, (("1", "1", "rad", "s", "1"),) * len(rows))
-
 
 @check_arguments
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:

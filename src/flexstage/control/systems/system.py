@@ -40,8 +40,7 @@ class System(CheckedFields):
     def __post_init__(self) -> None:
         super().__post_init__()
         """Refuse what does not fit together."""
-        if not _fits(self):
-            require(_findings(self))
+        require(_findings(self))
 
     @property
     def input_names(self) -> Annotated[tuple[str, ...], Called("inputs")]:
@@ -81,31 +80,16 @@ class System(CheckedFields):
         return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
 
 
-def _fits(system: System) -> bool:
-    """Whether there is nothing to find: a search makes ten thousand systems."""
-    states, width, height = len(system.A), len(system.inputs), len(system.outputs)
-    shapes = (np.shape(system.A), np.shape(system.B), np.shape(system.C), np.shape(system.D))
-    if shapes != ((states, states), (states, width), (height, states), (height, width)):
-        return False
-    named = len({each.name for each in system.inputs}) == width and len({each.name for each in system.outputs}) == height
-    return named and (system.step is None or 0.0 < system.step < np.inf)
-
-
 def _findings(system: System) -> Iterable[Finding]:
-    states = len(system.A)
-    wanted = {
-        "A": (states, states),
-        "B": (states, len(system.inputs)),
-        "C": (len(system.outputs), states),
-        "D": (len(system.outputs), len(system.inputs)),
-    }
-    for name, shape in wanted.items():
+    states, width, height = len(system.A), len(system.inputs), len(system.outputs)
+    for name, shape in (("A", (states, states)), ("B", (states, width)), ("C", (height, states)), ("D", (height, width))):
         found = np.shape(getattr(system, name))
         if found != shape:
             yield Finding(f"matrix {name}", f"it is {found}, where states, inputs and outputs make it {shape}", "Give matrices that fit")
     for kind, names in (("input", system.input_names), ("output", system.output_names)):
-        for name in sorted({name for name in names if names.count(name) > 1}):
-            yield Finding(name, f"{names.count(name)} {kind}s have this name", "Give each its own")
+        if len({*names}) < len(names):
+            for name in sorted({name for name in names if names.count(name) > 1}):
+                yield Finding(name, f"{names.count(name)} {kind}s have this name", "Give each its own")
     if system.step is not None and not 0.0 < system.step < np.inf:
         yield Finding("step", f"it is {system.step:g} s", "Give a positive time, or none for a continuous system")
 

@@ -94,15 +94,21 @@ def _forward(axes: Any, diagram: Diagram, places: Sequence[float], width: float)
     axes.text(0.08, _UPPER + 0.07, "x*", fontsize=8.0, fontweight="bold")
     _sum(axes, _LEFT)
     axes.text(_LEFT - 0.16, _UPPER + 0.07, "+", fontsize=7.0, ha="center")
-    start = _LEFT + _SUM
-    for block, place in zip(diagram.forward, places, strict=True):
-        _arrow(axes, (start, _UPPER), (place - 0.5 * width, _UPPER))
-        _block(axes, block, (place, _UPPER), width)
-        start = place + 0.5 * width
+    start = _chain(axes, diagram.forward, places, (_LEFT + _SUM, _UPPER), 0.5 * width)
     _arrow(axes, (start, _UPPER), (7.12, _UPPER))
     axes.text(7.12, _UPPER + 0.07, "x", fontsize=8.0, fontweight="bold", ha="right")
     if diagram.fed_forward:
         _feed_forward(axes, places, width)
+
+
+def _chain(axes: Any, blocks: Sequence[Block], places: Sequence[float], start: tuple[float, float], half: float) -> float:
+    """Blocks of a half width one after the other, to the left if it is negative; returns where the last one ends."""
+    x, level = start
+    for block, place in zip(blocks, places, strict=True):
+        _arrow(axes, (x, level), (place - half, level))
+        _block(axes, block, (place, level), 2.0 * abs(half))
+        x = place + half
+    return x
 
 
 def _feed_forward(axes: Any, places: Sequence[float], width: float) -> None:
@@ -119,13 +125,8 @@ def _feed_forward(axes: Any, places: Sequence[float], width: float) -> None:
 def _back(axes: Any, diagram: Diagram, places: Sequence[float], width: float) -> None:
     turn = 0.5 * (_RIGHT + 7.12)
     axes.plot([turn], [_UPPER], ".", color=INK, markersize=3.0)
-    blocks = list(zip(diagram.back[::-1], places, strict=True))
     axes.plot([turn, turn], [_UPPER, _LOWER], color=INK, linewidth=0.8)
-    start = turn
-    for block, place in reversed(blocks):
-        _arrow(axes, (start, _LOWER), (place + 0.5 * width, _LOWER))
-        _block(axes, block, (place, _LOWER), width)
-        start = place - 0.5 * width
+    start = _chain(axes, diagram.back, places[::-1], (turn, _LOWER), -0.5 * width)
     axes.plot([start, _LEFT], [_LOWER, _LOWER], color=INK, linewidth=0.8)
     _arrow(axes, (_LEFT, _LOWER), (_LEFT, _UPPER - _SUM))
     axes.text(_LEFT + 0.05, _UPPER - 0.22, "−", fontsize=8.0)
