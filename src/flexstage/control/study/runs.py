@@ -424,9 +424,9 @@ def _running(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[[
 
     def begin(count: int) -> Callable[[Array], Array]:
         lead, series = _noise(given, count, rest)
-        running, held = RunningLoop(computed, series), np.ones(len(computed.names), dtype=bool)
-        running.advance(np.zeros((lead, len(computed.names))), held)
-        return lambda commanded: running.advance(commanded, held).pose
+        running = RunningLoop(computed, series)
+        running.advance(np.zeros((lead, len(computed.names))))
+        return lambda commanded: running.advance(commanded).pose
 
     return begin
 

@@ -8,7 +8,7 @@ shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -19,7 +19,7 @@ from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
 from flexstage.experiment.records.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
 from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, assign, matches, number_names, select_names
-from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role, Samples, rising_problem
+from flexstage.experiment.records.record import Channel, ComputedSamples, InMemory, Record, Responses, Role, Samples, rising_problem
 from flexstage.experiment.records.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
@@ -145,20 +145,11 @@ class Contents:
         return " ".join(self.texts(name))
 
 
-@dataclass(frozen=True, eq=False)
-class SideBySide:
+def side_by_side(sources: Sequence[Samples]) -> Samples:
     """Samples of several sources as one: their channels one after another."""
-
-    sources: tuple[Samples, ...]
-
-    @property
-    def length(self) -> int:
-        """Number of samples of each channel."""
-        return min(source.length for source in self.sources)
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded, of all sources."""
-        return np.hstack([source.read(start, stop) for source in self.sources])
+    return ComputedSamples(
+        min(source.length for source in sources), lambda start, stop: np.hstack([source.read(start, stop) for source in sources])
+    )
 
 
 def complex_of(real: Array, imaginary: Array) -> Array:
@@ -254,7 +245,7 @@ def _record(contents: Contents, chosen: tuple[Variable, ...], options: Options) 
     time = contents.vector(options.arrays.time)
     clock = _clock(contents, time, options)
     axes = _axes(contents, chosen, time, options)
-    samples = SideBySide(tuple(variable.samples(axis) for variable, axis in axes))
+    samples = side_by_side([variable.samples(axis) for variable, axis in axes])
     channels = assign(_channels(contents, axes, options.arrays), options, contents.where)
     start = clock.start if time is not None else contents.number("start") or 0.0
     whole = Record(channels, clock.rate, samples, start, name=contents.text("name"), source=contents.where)
