@@ -24,6 +24,7 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annota
     Between samples the plant is exact for strokes and wrenches that are held and a ground that goes straight (see `zero_order_hold`): there
     is no error of integration. Raises `DesignError` for unknown names, lengths that differ, and where numbers grow beyond bounds.
 
+    >>> import numpy as np
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()

@@ -8,7 +8,7 @@ from flexstage.control.export.code.hysteresis import hysteresis_inverse, hystere
 from flexstage.control.export.code.laws import Core, matrix_core
 from flexstage.control.export.code.precision import Precision
 from flexstage.control.export.code.product import Code, product
-from flexstage.control.export.code.program import Program, Setting, Signal, State
+from flexstage.control.export.code.program import Program, ProgramSetting, Signal, State
 from flexstage.control.export.code.text import identifier, indent, number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.parts import parts
@@ -129,19 +129,19 @@ def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
     return (*(State(field, (size,)) for field, size in (*core.states, *taken)), *plays)
 
 
-def limit_settings(given: Machine) -> tuple[Setting, ...]:
+def limit_settings(given: Machine) -> tuple[ProgramSetting, ...]:
     """Limits of strokes, and of their change in a sample."""
     powers = given.amplifiers
     return (
-        Setting("low", powers.low, "limits of the strokes (or inputs)"),
-        Setting("high", powers.high, "their upper ends"),
-        Setting("most", powers.slew * given.step, "largest change in a sample"),
+        ProgramSetting("low", powers.low, "limits of the strokes (or inputs)"),
+        ProgramSetting("high", powers.high, "their upper ends"),
+        ProgramSetting("most", powers.slew * given.step, "largest change in a sample"),
     )
 
 
-def bounded(setting: Setting, precision: Precision) -> Setting:
+def bounded(setting: ProgramSetting, precision: Precision) -> ProgramSetting:
     """A setting whose numbers are finite."""
-    return Setting(setting.field, np.clip(setting.values, -precision.largest, precision.largest), setting.meaning)
+    return ProgramSetting(setting.field, np.clip(setting.values, -precision.largest, precision.largest), setting.meaning)
 
 
 def _tables(given: Machine, precision: Precision, *, fixed: bool) -> list[str]:

@@ -14,7 +14,7 @@ from flexstage.control.export.code.controller import bounded, controller_part, c
 from flexstage.control.export.code.laws import law_as_c
 from flexstage.control.export.code.legs import legs_beside, legs_test
 from flexstage.control.export.code.precision import Precision, count_constants, typed
-from flexstage.control.export.code.program import Function, Program
+from flexstage.control.export.code.program import Program, ProgramFunction
 from flexstage.control.export.code.text import comment, identifier, number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Simulated
@@ -97,7 +97,7 @@ def _about(given: Machine, program: Program, precision: Precision, about: str, *
     )
 
 
-def _setter(program: Program) -> Function:
+def _setter(program: Program) -> ProgramFunction:
     """The function that changes the gains of a loop."""
     name, half = program.name, number(0.5 * program.step)
     gains = "int loop, double proportional, double integral, double derivative"
@@ -111,7 +111,7 @@ def _setter(program: Program) -> Function:
         "set->derivative[loop] = derivative;",
     )
     notes = "Change the gains of a loop without a bump: its integrator takes over what the direct part loses."
-    return Function(f"void {name}_set_gains({name}_state *state, {name}_parameters *set, {gains})", body, notes)
+    return ProgramFunction(f"void {name}_set_gains({name}_state *state, {name}_parameters *set, {gains})", body, notes)
 
 
 def _replay(given: Machine, tested: Simulated, name: str, precision: Precision, legs: SampledLegs | None) -> list[str]:

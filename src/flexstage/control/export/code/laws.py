@@ -15,7 +15,7 @@ from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import with_prefilters
 from flexstage.control.export.code.modal import modal_form
 from flexstage.control.export.code.product import product
-from flexstage.control.export.code.program import Setting
+from flexstage.control.export.code.program import ProgramSetting
 from flexstage.control.export.code.text import number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.parts import Parts, parts
@@ -37,7 +37,7 @@ class Core:
     next: tuple[str, ...]
     flops: int
     begin: tuple[str, ...] = ()
-    settings: tuple[Setting, ...] = ()
+    settings: tuple[ProgramSetting, ...] = ()
     locals: tuple[str, ...] = ()
     prepare: tuple[str, ...] = ()
 
@@ -147,14 +147,15 @@ def _settled(system: System) -> Array:
     return np.linalg.solve(np.eye(len(system.A)) - system.A, system.B) if len(system.A) else np.zeros_like(system.B)
 
 
-def _gains(law: Decentralised, laws: list[PID], step: float) -> tuple[Setting, ...]:
+def _gains(law: Decentralised, laws: list[PID], step: float) -> tuple[ProgramSetting, ...]:
     """What may be changed at run time, with its unit."""
+    named = f"gains of the loops {', '.join(law.loops.names)} [1]"
     follows = [step * tracking_rate(each.tracking_time, step) if each.integral else 0.0 for each in laws]
     return (
-        Setting("proportional", np.array([each.proportional for each in laws]), f"gains of the loops {', '.join(law.loops.names)} [1]"),
-        Setting("integral", np.array([each.integral for each in laws]), "[1/s]"),
-        Setting("derivative", np.array([each.derivative for each in laws]), "[s]"),
-        Setting("tracking", np.array(follows), "share by which an integrator follows, in a sample, what a limit took"),
+        ProgramSetting("proportional", np.array([each.proportional for each in laws]), named),
+        ProgramSetting("integral", np.array([each.integral for each in laws]), "[1/s]"),
+        ProgramSetting("derivative", np.array([each.derivative for each in laws]), "[s]"),
+        ProgramSetting("tracking", np.array(follows), "share by which an integrator follows, in a sample, what a limit took"),
     )
 
 

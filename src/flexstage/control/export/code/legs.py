@@ -12,7 +12,7 @@ from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.export.code.controller import LARGEST, bounded, has_volts, limited
 from flexstage.control.export.code.precision import Precision
 from flexstage.control.export.code.product import Code
-from flexstage.control.export.code.program import Function, Program, Setting, Signal, State
+from flexstage.control.export.code.program import Program, ProgramFunction, ProgramSetting, Signal, State
 from flexstage.control.export.code.text import indent, number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.models.linear.model import Channel
@@ -66,11 +66,11 @@ def _states(given: Machine, legs: SampledLegs) -> tuple[State, ...]:
     return (*own, State("total", (len(given.actuators),)))
 
 
-def _settings(given: Machine, legs: SampledLegs) -> tuple[Setting, ...]:
+def _settings(given: Machine, legs: SampledLegs) -> tuple[ProgramSetting, ...]:
     named = ", ".join(legs.actuators)
     return (
-        Setting("leg", legs.gains, f"g / (a k) of the legs {named} [m/N]"),
-        Setting("quick", given.amplifiers.slew * legs.step, "largest change of both loops together in a sample of the legs"),
+        ProgramSetting("leg", legs.gains, f"g / (a k) of the legs {named} [m/N]"),
+        ProgramSetting("quick", given.amplifiers.slew * legs.step, "largest change of both loops together in a sample of the legs"),
     )
 
 
@@ -129,7 +129,7 @@ def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Pr
         outer,
         states=(*outer.states, *_states(given, legs)),
         settings=(*(outer.settings or ()), *(bounded(each, precision) for each in _settings(given, legs))),
-        functions=(*outer.functions, Function(call, body, notes)),
+        functions=(*outer.functions, ProgramFunction(call, body, notes)),
     )
 
 

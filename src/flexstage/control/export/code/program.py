@@ -34,7 +34,7 @@ class State:
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class ProgramSetting:
     """A group of numbers that may be changed between two steps: `field`, the values they begin with, and what they mean."""
 
     field: str
@@ -43,7 +43,7 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Function:
+class ProgramFunction:
     """A further function of a program: how it is called, the lines of its body, and notes."""
 
     call: str
@@ -67,8 +67,8 @@ class Program:
     outputs: tuple[Signal, ...]
     states: tuple[State, ...]
     code: Code
-    settings: tuple[Setting, ...] | None = None
-    functions: tuple[Function, ...] = ()
+    settings: tuple[ProgramSetting, ...] | None = None
+    functions: tuple[ProgramFunction, ...] = ()
 
     @property
     def header(self) -> str:
