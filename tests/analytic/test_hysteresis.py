@@ -17,11 +17,11 @@ from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.models.envelope import Envelope, straight
 from flexstage.control.hysteresis.models.inverse import inverse
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.models.preisach import preisach
 from flexstage.control.hysteresis.models.scaled import Stacks, scale_to_stacks
 from flexstage.control.hysteresis.models.shape import major_loop
 from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
+from tests.laws.preisach import preisach
 
 RANGE = (0.0, 1000.0)
 STROKE = 150e-6

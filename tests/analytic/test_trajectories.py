@@ -64,10 +64,9 @@ def test_jerk_alone_has_the_closed_form():
 
 def test_smooth_moves_have_their_stated_extremes():
     move = join([(0.5, smooth(np.zeros(1), np.array([3.0]), 0.5))])
-    assert move.largest(1)[0] == pytest.approx(15.0 / 8.0 * 3.0 / 0.5, rel=1e-14)
-    assert move.largest(2)[0] == pytest.approx(10.0 / 3.0**0.5 * 3.0 / 0.25, rel=1e-14)
     times = np.linspace(0.0, 0.5, 20001)
-    assert np.max(np.abs(move.at(times, 2))) == pytest.approx(move.largest(2)[0], rel=1e-7)
+    for order, most in ((1, 15.0 / 8.0 * 3.0 / 0.5), (2, 10.0 / 3.0**0.5 * 3.0 / 0.25)):
+        assert np.max(np.abs(move.at(times, order))) == pytest.approx(most, rel=1e-7)
 
 
 RASTERS = [
@@ -77,26 +76,53 @@ RASTERS = [
     Raster(length=20e-6, pitch=0.5e-6, lines=3, speed=1e-3, acceleration=10.0, scan=Scan.ONE_WAY, back=1.2e-3),
     Raster(length=20e-6, pitch=0.5e-6, lines=1, speed=1e-3, acceleration=10.0, start=0.01),
 ]
-TRAJECTORIES = [
-    *RASTERS,
-    Step({"x": 3e-6, "y": -4e-6, "rz": 1e-5}, start=1e-3, limits=Limits(1e-4, 0.1, 200.0)),
-    Step({"rz": 1e-5}, limits=Limits(1e-3, 1.0, 2000.0)),
-    Sine({"x": 1e-6, "y": 2e-6}, 37.0, {"y": 0.5 * np.pi}, start=0.01, fade=0.02),
-    Spiral(10e-6, 1e-6, EvenSpeed(1e-3), ramp=2e-3),
-    Spiral(10e-6, 1e-6, EvenTurns(50.0), ramp=2e-2, start=0.01),
-]
 
 
-@pytest.mark.parametrize("trajectory", TRAJECTORIES, ids=lambda each: type(each).__name__)
-def test_peaks_bound_what_differences_show(trajectory):
-    end = 1.05 * trajectory.duration if np.isfinite(trajectory.duration) else 0.2
-    speed, acceleration = differences(trajectory, np.linspace(0.0, end, 40_001))
-    peaks = trajectory.peaks()
-    assert np.all(speed <= peaks.speed * (1.0 + 1e-6))
-    assert np.all(acceleration <= peaks.acceleration * 1.001)
-    exact = not isinstance(trajectory, (Sine, Spiral))  # theirs are bounds of both coordinates
-    assert np.all(speed >= peaks.speed * (1.0 - 2e-3)) or not exact
-    assert np.all(acceleration >= peaks.acceleration * (1.0 - 2e-3)) or not exact
+def extremes(trajectory, end):
+    """Largest speed and acceleration of each coordinate, by differences."""
+    return differences(trajectory, np.linspace(0.0, end, 40_001))
+
+
+@pytest.mark.parametrize("limits", [Limits(1e-4, 0.1, 200.0), Limits(1e-2, 1e-2, 200.0), Limits(1e-2, 1.0, 20.0)])
+def test_steps_keep_to_their_limits_and_reach_one(limits):
+    step = Step({"x": 3e-6, "y": -4e-6, "rz": 1e-5}, start=1e-3, limits=limits)
+    speed, acceleration = extremes(step, 1.05 * step.duration)
+    path, most = np.hypot(*speed[:2]), np.hypot(*acceleration[:2])
+    assert path <= limits.speed * (1.0 + 1e-6)
+    assert most <= limits.acceleration * 1.001
+    assert path >= limits.speed * (1.0 - 2e-3) or most >= limits.acceleration * (1.0 - 2e-3) or limits.jerk < 100.0
+    assert speed[2] / speed[0] == pytest.approx(10.0 / 3.0, rel=1e-9)
+
+
+def test_sines_fade_in_to_their_speed():
+    sine = Sine({"x": 1e-6, "y": 2e-6}, 37.0, {"y": 0.5 * np.pi}, start=0.01, fade=0.02)
+    speed, acceleration = extremes(sine, 0.2)
+    turning, rate = 2.0 * np.pi * 37.0, 15.0 / 8.0 / 0.02
+    size = np.array([1e-6, 2e-6])
+    assert np.all(speed >= size * turning * (1.0 - 2e-3))
+    assert np.all(speed <= size * (turning + rate) * (1.0 + 1e-6))
+    assert np.all(acceleration <= size * (turning**2 + 2.0 * turning * rate + 10.0 / 3.0**0.5 / 0.02**2) * 1.001)
+
+
+@pytest.mark.parametrize(("pace", "ramp"), [(EvenSpeed(1e-3), 2e-3), (EvenTurns(50.0), 2e-2)], ids=["speed", "turns"])
+def test_spirals_speed_up_gently(pace, ramp):
+    spiral, growth = Spiral(10e-6, 1e-6, pace, ramp=ramp, start=0.01), 1e-6 / (2.0 * np.pi)
+    speed, acceleration = extremes(spiral, 1.05 * spiral.duration)
+    last = 10e-6 / growth
+    if isinstance(pace, EvenSpeed):
+        most, bend = pace.speed, 2.0 * pace.speed**2 / growth
+    else:
+        rate = 2.0 * np.pi * pace.turns
+        most, bend = growth * rate * np.hypot(1.0, last), growth * rate**2 * np.hypot(2.0, last)
+    assert np.all(speed <= most * (1.0 + 1e-6))
+    assert np.all(acceleration <= (bend + most / ramp) * 1.001)
+
+
+@pytest.mark.parametrize("raster", RASTERS)
+def test_rasters_turn_within_their_acceleration(raster):
+    speed, acceleration = extremes(raster, 1.05 * raster.duration)
+    assert np.all(acceleration <= raster.acceleration * 1.001)
+    assert speed[0] >= raster.speed * (1.0 - 2e-3)
 
 
 @pytest.mark.parametrize("raster", RASTERS)
@@ -107,7 +133,6 @@ def test_rasters_pass_their_lines_at_even_speed(raster):
         sign = -1.0 if raster.scan is Scan.BOTH_WAYS and number % 2 else 1.0
         assert way[:, 0] == pytest.approx(sign * raster.length * np.linspace(-0.5, 0.5, 7), abs=1e-16)
         assert way[:, 1] == pytest.approx((number - 0.5 * (raster.lines - 1)) * raster.pitch * np.ones(7), abs=1e-16)
-    assert np.all(raster.peaks().acceleration <= raster.acceleration * (1.0 + 1e-9))
     assert raster.at(np.array([0.0, raster.duration])) == pytest.approx(np.zeros((2, 2)), abs=1e-18)
     reach = np.max(np.abs(raster.at(np.linspace(0.0, raster.duration, 20_001))[:, 0]))
     assert reach == pytest.approx(0.5 * raster.length + raster.overshoot, rel=1e-4)
@@ -144,9 +169,7 @@ def test_steps_keep_to_the_straight_path():
     step = Step({"x": 3e-6, "y": -4e-6}, start=0.5, limits=Limits(1e-4, 0.1, 200.0))
     way = step.at(np.linspace(0.0, 1.0, 501))
     assert way[:, 1] == pytest.approx(-4.0 / 3.0 * way[:, 0], abs=1e-20)
-    assert step.peaks().speed == pytest.approx(np.array([0.6, 0.8]) * 1e-4, rel=1e-12)
     assert np.hypot(*way[-1]) == pytest.approx(5e-6, rel=1e-12)
-    assert np.all(np.isinf(Step({"x": 1e-6}).peaks().speed))
 
 
 def test_what_the_strokes_do_not_reach_is_refused_with_numbers():

@@ -18,7 +18,7 @@ from flexstage.control.export.compiler import compile_source
 from flexstage.control.simulation.disturbances import inflow
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Series, Simulated, simulation_result
-from flexstage.control.simulation.run import require_finite
+from flexstage.control.simulation.running import require_finite
 from flexstage.control.systems.system import select
 
 _NONE: Mapping[str, Array] = {}
@@ -51,13 +51,13 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     >>> bool(np.max(np.abs(found.pose - simulate(known, asked).pose)) < 1e-18)
     True
     """
-    entering = inflow(given, reference, disturbances)
+    entering = inflow(given, len(reference), disturbances)
     felt = tuple(index for index, channel in enumerate(given.disturbances) if channel.name in disturbances)
     program = loop_code(_without_idle_disturbances(given, felt))
-    rows = run_program(program, np.hstack([entering.reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
-    series = _series(program, rows)
+    rows = run_program(program, np.hstack([reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
+    series = _series(program, rows, reference)
     require_finite(given, np.hstack([series.motions, series.command, series.stroke]))
-    return simulation_result(given, entering.reference, series)
+    return simulation_result(given, series)
 
 
 def _without_idle_disturbances(given: Machine, felt: tuple[int, ...]) -> Machine:
@@ -66,12 +66,13 @@ def _without_idle_disturbances(given: Machine, felt: tuple[int, ...]) -> Machine
     return replace(given, plant=select(given.plant, (*given.actuators, *names), given.plant.output_names))
 
 
-def _series(program: Program, rows: Array) -> Series:
+def _series(program: Program, rows: Array, reference: Array) -> Series:
     """Columns of the outputs by the fields they stand in."""
     ends = np.cumsum([0, *(len(signal.channels) for signal in program.outputs)])
     columns = {signal.field: slice(*ends[number : number + 2]) for number, signal in enumerate(program.outputs)}
     parts = {field: rows[:, place] for field, place in columns.items()}
     return Series(
+        reference=reference,
         pose=parts["pose"],
         motions=parts["motion"],
         command=parts["command"],

@@ -10,7 +10,7 @@ import scipy
 from scipy.optimize import brentq
 
 from flexstage.control.hysteresis.models.bouc_wen import BoucWen
-from flexstage.control.hysteresis.models.preisach import preisach
+from tests.laws.preisach import preisach
 
 
 def swept(time):

@@ -25,7 +25,6 @@ from flexstage.control.export.fmu.unit import fmu, fmu_sources
 from flexstage.control.hysteresis.models.bouc_wen import BoucWen, bouc_wen
 from flexstage.control.hysteresis.models.envelope import Envelope
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.models.preisach import Preisach
 from flexstage.control.simulation.machine import Machine, Relief, machine
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
@@ -35,6 +34,7 @@ from tests.elsewhere.compiled_loop import run_program, simulate_compiled
 from tests.elsewhere.independent_loop import Computer
 from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way, without_limits
 from tests.elsewhere.test_loop_simulation import worst
+from tests.laws.preisach import Preisach
 
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no compiler of C on the PATH")
 

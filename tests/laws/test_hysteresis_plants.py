@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.models.bouc_wen import BoucWen, bouc_wen
-from flexstage.control.hysteresis.models.preisach import Preisach, preisach
 from flexstage.control.hysteresis.models.shape import major_loop
 from tests.conftest import examples
 from tests.laws.hystereses import VOLTS, fractions, levels, on_grid, turns, walked
+from tests.laws.preisach import Preisach, preisach
 
 SIZE = 1e-4
 

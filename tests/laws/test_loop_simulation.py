@@ -18,10 +18,10 @@ from flexstage.control.controllers.pi import PI
 from flexstage.control.example import integral_loop
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.plant_models.creep_plant import add_creep
-from flexstage.control.simulation.kernel import Compensator
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.result import step_figures, tracking
 from flexstage.control.simulation.run import simulate
+from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.systems.system import System, static
 from flexstage.control.trajectory.profile import Limits
 from flexstage.control.trajectory.step import Step
@@ -78,14 +78,17 @@ def test_nothing_is_known_before_its_time():
     assert np.array_equal(one.motions[200], other.motions[200])  # the stroke of a sample is on its way
 
 
-def test_blocks_leave_no_trace(monkeypatch):
+def test_parts_leave_no_trace():
+    """A loop that runs on in parts gives what it gives in one, to the bit: nothing but its state is carried over."""
     known = full_loop(inverse=True)
     reference, disturbances = way(known, 300)
-    whole = simulate(known, reference, disturbances)
-    monkeypatch.setattr("flexstage.control.simulation.run.BLOCK", 7)
-    parted = simulate(known, reference, disturbances)
-    for name in ("pose", "given", "stroke", "motions", "readings"):
-        assert np.max(np.abs(getattr(whole, name) - getattr(parted, name))) <= 1e-13 * np.max(np.abs(getattr(whole, name)))
+    whole, running = simulate(known, reference, disturbances), RunningLoop(known, disturbances)
+    parts = [running.advance(reference[start : start + 7]) for start in range(0, 300, 7)]
+    for name in ("pose", "given", "readings"):
+        assert np.array_equal(getattr(whole, name), np.concatenate([getattr(each, name) for each in parts]))
+    for name in ("stroke", "motions"):  # products of many rows at once
+        parted = np.concatenate([getattr(each, name) for each in parts])
+        assert np.max(np.abs(getattr(whole, name) - parted)) <= 1e-13 * np.max(np.abs(getattr(whole, name)))
 
 
 @examples(5, 50)
@@ -162,16 +165,6 @@ def test_the_inverse_undoes_the_hysteresis_and_is_not_lost_behind_a_limit():
     assert np.max(np.abs(found.stroke - found.command)[free]) < 1e-12 * np.max(np.abs(found.command))
     uncompensated = simulate(replace(opened, compensation=None), reference)
     assert np.max(np.abs(uncompensated.stroke - uncompensated.command)[free]) > 1e-6
-
-
-def test_the_compensator_stays_where_it_is_until_something_is_applied():
-    model = plays()
-    one = Compensator(model, np.full(6, 500.0))
-    wanted, out = model.step(model.start(np.full(6, 500.0)), np.full(6, 620.0))[1], np.empty(6)
-    for _ in range(3):
-        assert one.volts(wanted, out) == pytest.approx(np.full(6, 620.0), rel=1e-12)
-    one.move_to(np.full(6, 900.0))  # a travel back comes by another branch
-    assert one.volts(wanted, out) != pytest.approx(np.full(6, 620.0), rel=1e-3)
 
 
 def test_creep_is_run_between_stack_and_stage():

@@ -30,7 +30,6 @@ HOMES = {
     "simulation.result": "step_figures tracking",
     "hysteresis.models.inverse": "hysteresis_inverse",
     "hysteresis.models.bouc_wen": "bouc_wen",
-    "hysteresis.models.preisach": "preisach",
     "hysteresis.creep": "LogCreep exponentials",
     "hysteresis.stack": "dump_hysteresis load_hysteresis stack_hysteresis",
     "hysteresis.stack_test": "stack_test",

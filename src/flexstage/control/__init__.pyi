@@ -49,9 +49,6 @@ from flexstage.control.hysteresis.creep import (
 from flexstage.control.hysteresis.models.inverse import (
     hysteresis_inverse as hysteresis_inverse,
 )
-from flexstage.control.hysteresis.models.preisach import (
-    preisach as preisach,
-)
 from flexstage.control.hysteresis.stack import (
     dump_hysteresis as dump_hysteresis,
     load_hysteresis as load_hysteresis,

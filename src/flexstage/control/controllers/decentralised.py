@@ -100,12 +100,18 @@ def loop_systems(control: Decentralised, step: float | None = None) -> tuple[Sys
 def _in_series(law: Law, notches: tuple[Notch, ...], step: float | None) -> System:
     found = law.system(step)
     for each in notches:
-        found = _filtered(found, each.system(step))
+        found = filtered(found, each.system(step))
     return found
 
 
-def _filtered(law: System, notch: System) -> System:
-    """A law whose command passes a notch: what is wired here is always the same, `connect` finds out what is."""
+def filtered(law: System, notch: System) -> System:
+    """A law whose command passes a notch: what is wired here is always the same, `connect` finds out what is.
+
+    >>> from flexstage.control.controllers.pi import PI
+    >>> law = PI(integral=200.0).system()
+    >>> filtered(law, Notch(50.0).system()).output_names == law.output_names
+    True
+    """
     rows, columns = len(law.A), len(notch.A)
     A = np.block([[law.A, np.zeros((rows, columns))], [notch.B @ law.C, notch.A]])
     B = np.vstack([law.B, notch.B @ law.D])

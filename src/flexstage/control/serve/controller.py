@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
+from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.control.robustness.stability import require_stable
 from flexstage.control.serve.errors import Code, CommandError
@@ -166,7 +167,7 @@ class StageController:
         wanted = np.stack([self._course(axis, count) for axis in range(len(self.axes))], axis=-1)
         try:
             found = self.running.advance(wanted / _MICRO, self.held)
-        except FloatingPointError:
+        except DesignError:
             self._lose()
             return
         poses, amplifiers = found.pose * _MICRO, self.running.machine.amplifiers

@@ -9,13 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
+from flexstage.base.number import Array
 from flexstage.base.text import printable
 from flexstage.base.version import __version__
 from flexstage.control.serve import recorder, waves
-from flexstage.control.serve.controller import StageController
+from flexstage.control.serve.controller import Generator, StageController
 from flexstage.control.serve.errors import Code, CommandError
 
 LONGEST = 65_536
@@ -92,13 +94,9 @@ class Session:
             raise CommandError(Code.DOUBLE_AXIS)
         return found
 
-    def generators(self, words: Sequence[str]) -> list[int]:
-        """Places of wave generators, one an axis, by their numbers; of all where none is named."""
-        return [_place(word, len(self.stage.axes)) for word in words] if words else list(range(len(self.stage.axes)))
-
-    def by_axis(self, words: Sequence[str], shown: Callable[[int], str]) -> list[str]:
-        """`axis=value` for each."""
-        return [f"{self.stage.axes[axis]}={shown(axis)}" for axis in self.axes(words)]
+    def places(self, words: Sequence[str], count: int) -> list[int]:
+        """Places by their numbers, counted from 1, of so many; of all where none is named."""
+        return [_place(word, count) for word in words] if words else list(range(count))
 
 
 def spelled(name: str) -> str:
@@ -145,24 +143,24 @@ def _shown(value: float) -> str:
 # --- what it is ---
 
 
-def _identify(session: Session, words: Sequence[str]) -> list[str]:
-    _nothing(words)
-    name = printable(session.stage.name).replace(",", " ")
-    return [f"flexstage,virtual controller,{name},{__version__}"]
+Answer: TypeAlias = Callable[[Session, Sequence[str]], Iterable[str] | None]
 
 
-def _syntax(_: Session, words: Sequence[str]) -> list[str]:
-    _nothing(words)
-    return ["2.0"]
+def _plain(lines: Callable[[StageController], Sequence[str]]) -> Answer:
+    """An answer to a command without arguments."""
+
+    def answer(session: Session, words: Sequence[str]) -> Sequence[str]:
+        _nothing(words)
+        return lines(session.stage)
+
+    return answer
 
 
-def _versions(_: Session, words: Sequence[str]) -> list[str]:
-    _nothing(words)
-    return [f"flexstage: {__version__}"]
+def _identify(stage: StageController) -> list[str]:
+    return [f"flexstage,virtual controller,{printable(stage.name).replace(',', ' ')},{__version__}"]
 
 
-def _help(_: Session, words: Sequence[str]) -> list[str]:
-    _nothing(words)
+def _help(_: StageController) -> list[str]:
     return ["The following commands are valid:", *(f"{spelled(name)} {each.meaning}" for name, each in COMMANDS.items()), "end of help"]
 
 
@@ -199,12 +197,24 @@ def _one(words: Sequence[str], size: int) -> list[Sequence[str]]:
 # --- motion ---
 
 
-def _set_servo(session: Session, words: Sequence[str]) -> None:
-    wanted = session.pairs(words)
-    if any(value not in {0.0, 1.0} for value in wanted.values()):
-        raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
-    for axis, value in wanted.items():
-        session.stage.hold(axis, on=value == 1.0)
+def _set_axes(change: Callable[[StageController, int, float], None], *, switches: bool = True) -> Answer:
+    """Give axes a number each: 0 or 1 where it `switches` something, else one above 0."""
+
+    def answer(session: Session, words: Sequence[str]) -> None:
+        wanted = session.pairs(words)
+        if switches and any(value not in {0.0, 1.0} for value in wanted.values()):
+            raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
+        if not switches and any(value <= 0.0 for value in wanted.values()):
+            raise CommandError(Code.VELOCITY_OUT_OF_LIMITS)
+        for axis, value in wanted.items():
+            change(session.stage, axis, value)
+
+    return answer
+
+
+def _of_axes(shown: Callable[[StageController, int], str]) -> Answer:
+    """Answer `axis=value` for each."""
+    return lambda session, words: [f"{session.stage.axes[axis]}={shown(session.stage, axis)}" for axis in session.axes(words)]
 
 
 def _move(session: Session, words: Sequence[str]) -> None:
@@ -224,28 +234,8 @@ def _trigger_by_motion(session: Session) -> None:
 
 
 def _step(session: Session, words: Sequence[str]) -> None:
-    ((axis, value),) = session.pairs(words[:2]).items() if len(words) == 2 else _wrong_count()
-    session.stage.jump(axis, value)
-
-
-def _wrong_count() -> list[tuple[int, float]]:
-    raise CommandError(Code.NUMBER_OF_PARAMETERS)
-
-
-def _set_velocity(session: Session, words: Sequence[str]) -> None:
-    wanted = session.pairs(words)
-    if any(value <= 0.0 for value in wanted.values()):
-        raise CommandError(Code.VELOCITY_OUT_OF_LIMITS)
-    for axis, value in wanted.items():
-        session.stage.velocity[axis] = value
-
-
-def _set_ramp(session: Session, words: Sequence[str]) -> None:
-    wanted = session.pairs(words)
-    if any(value not in {0.0, 1.0} for value in wanted.values()):
-        raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
-    for axis, value in wanted.items():
-        session.stage.is_ramped[axis] = value == 1.0
+    ((name, value),) = _one(words, 2)
+    session.stage.jump(session.axis(name), _number(value))
 
 
 def _stop(session: Session, words: Sequence[str]) -> None:
@@ -256,24 +246,23 @@ def _stop(session: Session, words: Sequence[str]) -> None:
 
 def _halt(session: Session, words: Sequence[str]) -> None:
     session.axes(words)
-    session.stage.stop()
-    session.error = Code.STOPPED
+    _stop(session, ())
 
 
 def _bits(flags: Iterable[bool]) -> list[str]:
     return [f"{sum(1 << place for place, flag in enumerate(flags) if flag):X}"]
 
 
-def _readings(session: Session, words: Sequence[str]) -> list[str]:
-    channels = [_place(word, len(session.stage.readings)) for word in words] if words else range(len(session.stage.readings))
-    return [f"{channel + 1}={_shown(1e6 * float(session.stage.readings[channel]))}" for channel in channels]
+def _signals(values: Callable[[StageController], Array]) -> Answer:
+    """Answer `number=value` for each channel; unknown where a value is no number."""
 
+    def answer(session: Session, words: Sequence[str]) -> list[str]:
+        found = values(session.stage)
+        if not np.all(np.isfinite(found)):
+            raise CommandError(Code.UNKNOWN_PARAMETER)
+        return [f"{channel + 1}={_shown(float(found[channel]))}" for channel in session.places(words, len(found))]
 
-def _volts(session: Session, words: Sequence[str]) -> list[str]:
-    if not session.stage.output_is_known(recorder.VOLTAGE):
-        raise CommandError(Code.UNKNOWN_PARAMETER)
-    channels = [_place(word, len(session.stage.volts)) for word in words] if words else range(len(session.stage.volts))
-    return [f"{channel + 1}={_shown(float(session.stage.volts[channel]))}" for channel in channels]
+    return answer
 
 
 # --- wave generator ---
@@ -329,34 +318,26 @@ def _wave_data(session: Session, words: Sequence[str]) -> list[str]:
     return _array(words, columns, [f"Waveform of wave table {number}" for number in numbers], session.stage.step)
 
 
-def _connect_waves(session: Session, words: Sequence[str]) -> None:
-    found = [(_place(one, len(session.stage.axes)), _integer(table, 0, _TABLES)) for one, table in _groups(words, 2)]
-    if any(session.stage.generators[one].at is not None for one, _ in found):
-        raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
-    for one, table in found:
-        session.stage.generators[one].table = table
+def _set_generators(name: str, read: Callable[[str], float], *, idle: bool = False) -> Answer:
+    """Set a number of wave generators, of those that are `idle` only."""
 
+    def answer(session: Session, words: Sequence[str]) -> None:
+        generators = session.stage.generators
+        found = [(generators[_place(one, len(generators))], read(value)) for one, value in _groups(words, 2)]
+        if idle and any(one.at is not None for one, _ in found):
+            raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
+        for one, value in found:
+            setattr(one, name, value)
 
-def _set_cycles(session: Session, words: Sequence[str]) -> None:
-    found = [(_place(one, len(session.stage.axes)), _integer(count, 0, 2**31)) for one, count in _groups(words, 2)]
-    for one, count in found:
-        session.stage.generators[one].cycles = count
-
-
-def _set_offset(session: Session, words: Sequence[str]) -> None:
-    found = [(_place(one, len(session.stage.axes)), _number(offset)) for one, offset in _groups(words, 2)]
-    if any(session.stage.generators[one].at is not None for one, _ in found):
-        raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
-    for one, offset in found:
-        session.stage.generators[one].offset = offset
+    return answer
 
 
 def _set_wave_rate(session: Session, words: Sequence[str]) -> None:
-    count = len(session.stage.axes)
+    generators = session.stage.generators
     found = [(one, _integer(rate, 1, 1_000_000), _integer(kind, 0, 1)) for one, rate, kind in _groups(words, 3)]
     for word, rate, kind in found:
-        for one in range(count) if word == "0" else [_place(word, count)]:
-            session.stage.generators[one].rate, session.stage.generators[one].is_straight = rate, kind == 1
+        for place in session.places([] if word == "0" else [word], len(generators)):
+            generators[place].rate, generators[place].is_straight = rate, kind == 1
 
 
 def _generate(session: Session, words: Sequence[str]) -> None:
@@ -376,11 +357,11 @@ def _generate(session: Session, words: Sequence[str]) -> None:
         session.stage.recorder.start()
 
 
-def _of_generators(shown: Callable[[StageController, int], str]) -> Callable[[Session, Sequence[str]], list[str]]:
-    def answer(session: Session, words: Sequence[str]) -> list[str]:
-        return [f"{one + 1}={shown(session.stage, one)}" for one in session.generators(words)]
-
-    return answer
+def _of_generators(shown: Callable[[Generator], object]) -> Answer:
+    """Answer `number=value` for each."""
+    return lambda session, words: [
+        f"{place + 1}={shown(session.stage.generators[place])}" for place in session.places(words, len(session.stage.generators))
+    ]
 
 
 # --- data recorder ---
@@ -388,7 +369,7 @@ def _of_generators(shown: Callable[[StageController, int], str]) -> Callable[[Se
 
 def _tables(words: Sequence[str]) -> list[int]:
     try:
-        return [_place(word, recorder.TABLES) for word in words] if words else list(range(recorder.TABLES))
+        return [_place(word, recorder.TABLES) for word in words] or list(range(recorder.TABLES))
     except CommandError:
         raise CommandError(Code.INVALID_RECORDER_TABLE) from None
 
@@ -421,8 +402,7 @@ def _source(session: Session, table: int) -> str:
     return str(source + 1) if option == recorder.VOLTAGE else session.stage.axes[source]
 
 
-def _recorder_options(_: Session, words: Sequence[str]) -> list[str]:
-    _nothing(words)
+def _recorder_options(_: StageController) -> list[str]:
     return [
         "#RecordOptions",
         *(f"{number}={text}" for number, text in _OPTIONS.items()),
@@ -445,9 +425,8 @@ def _set_trigger(session: Session, words: Sequence[str]) -> None:
 
 
 def _set_record_rate(session: Session, words: Sequence[str]) -> None:
-    if len(words) != 1:
-        raise CommandError(Code.NUMBER_OF_PARAMETERS)
-    session.stage.recorder.rate = _integer(words[0], 1, 1_000_000)
+    ((rate,),) = _one(words, 1)
+    session.stage.recorder.rate = _integer(rate, 1, 1_000_000)
 
 
 def _record(session: Session, words: Sequence[str]) -> list[str]:
@@ -489,8 +468,8 @@ COMMANDS: dict[str, Command] = {
     "\x07": Command(lambda _s, _: ["\xb1"], "whether a command can be taken", f"{_M}127"),
     "\x09": Command(lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
     "\x18": Command(_stop, "stop all axes", f"{_E}178"),
-    "*IDN?": Command(_identify, "what it is", f"{_E}178"),
-    "CSV?": Command(_syntax, "syntax version", f"{_M}136"),
+    "*IDN?": Command(_plain(_identify), "what it is", f"{_E}178"),
+    "CSV?": Command(_plain(lambda _: ["2.0"]), "syntax version", f"{_M}136"),
     "DRC": Command(_configure, "set data recorder configuration", f"{_E}66, 67"),
     "DRC?": Command(
         lambda s, w: [f"{t + 1}={_source(s, t)} {s.stage.recorder.options[t]}" for t in _tables(w)],
@@ -507,50 +486,54 @@ COMMANDS: dict[str, Command] = {
     "DRT?": Command(lambda s, w: [f"{t + 1}={s.trigger} 0" for t in _tables(w)], "get data recorder trigger source", f"{_E}66, 67"),
     "ERR?": Command(_last_error, "get error number and forget it", f"{_M}207"),
     "GWD?": Command(_wave_data, "get wave table data", f"{_E}100"),
-    "HDR?": Command(_recorder_options, "get all data recorder options", f"{_E}66, 67"),
-    "HLP?": Command(_help, "get list of available commands"),
+    "HDR?": Command(_plain(_recorder_options), "get all data recorder options", f"{_E}66, 67"),
+    "HLP?": Command(_plain(_help), "get list of available commands"),
     "HLT": Command(_halt, "halt all axes"),
     "MOV": Command(_move, "set target position", f"{_M}116"),
-    "MOV?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.target[a])), "get target position"),
+    "MOV?": Command(_of_axes(lambda s, a: _shown(s.target[a])), "get target position"),
     "MVR": Command(_move_by, "set target relative to current target"),
-    "ONT?": Command(lambda s, w: s.by_axis(w, lambda a: str(int(s.stage.on_target[a]))), "get on-target state"),
-    "POS?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.position[a])), "get real position", f"{_M}116"),
-    "PUN?": Command(lambda s, w: s.by_axis(w, lambda a: s.stage.units[a]), "get position unit"),
+    "ONT?": Command(_of_axes(lambda s, a: str(int(s.on_target[a]))), "get on-target state"),
+    "POS?": Command(_of_axes(lambda s, a: _shown(s.position[a])), "get real position", f"{_M}116"),
+    "PUN?": Command(_of_axes(lambda s, a: s.units[a]), "get position unit"),
     "RTR": Command(_set_record_rate, "set record table rate", f"{_E}67"),
     "RTR?": Command(lambda s, _: [str(s.stage.recorder.rate)], "get record table rate", f"{_E}67"),
     "SAI?": Command(_names, "get list of current axis identifiers", f"{_M}186"),
     "SPA?": Command(_parameter, "get volatile memory parameters: the servo update time", f"{_E}108"),
     "STE": Command(_step, "start step and response measurement", f"{_E}66"),
     "STP": Command(_stop, "stop all axes"),
-    "SVO": Command(_set_servo, "set servo mode"),
-    "SVO?": Command(lambda s, w: s.by_axis(w, lambda a: str(int(s.stage.held[a]))), "get servo mode"),
-    "TMN?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.low[a])), "get minimum commandable position", f"{_M}198"),
-    "TMX?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.high[a])), "get maximum commandable position"),
+    "SVO": Command(_set_axes(lambda s, axis, value: s.hold(axis, on=value == 1.0)), "set servo mode"),
+    "SVO?": Command(_of_axes(lambda s, a: str(int(s.held[a]))), "get servo mode"),
+    "TMN?": Command(_of_axes(lambda s, a: _shown(s.low[a])), "get minimum commandable position", f"{_M}198"),
+    "TMX?": Command(_of_axes(lambda s, a: _shown(s.high[a])), "get maximum commandable position"),
     "TNR?": Command(lambda _s, _: [str(recorder.TABLES)], "get number of record tables", f"{_E}67"),
     "TPC?": Command(lambda s, _: [str(len(s.stage.volts))], "get number of output channels"),
     "TSC?": Command(lambda s, _: [str(len(s.stage.readings))], "get number of input signal channels"),
-    "TSP?": Command(_readings, "get input signal position value", f"{_M}117"),
+    "TSP?": Command(_signals(lambda s: 1e6 * s.readings), "get input signal position value", f"{_M}117"),
     "TWG?": Command(lambda s, _: [str(len(s.stage.axes))], "get number of wave generators"),
-    "VCO": Command(_set_ramp, "set velocity control mode", f"{_E}35"),
-    "VCO?": Command(lambda s, w: s.by_axis(w, lambda a: str(int(s.stage.is_ramped[a]))), "get velocity control mode", f"{_E}35"),
-    "VEL": Command(_set_velocity, "set closed-loop velocity", f"{_M}204"),
-    "VEL?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.velocity[a])), "get closed-loop velocity", f"{_M}204"),
-    "VER?": Command(_versions, "get versions", f"{_M}204"),
-    "VOL?": Command(_volts, "get voltage of output channel"),
+    "VCO": Command(_set_axes(lambda s, axis, value: s.is_ramped.__setitem__(axis, value == 1.0)), "set velocity control mode", f"{_E}35"),
+    "VCO?": Command(_of_axes(lambda s, a: str(int(s.is_ramped[a]))), "get velocity control mode", f"{_E}35"),
+    "VEL": Command(
+        _set_axes(lambda s, axis, value: s.velocity.__setitem__(axis, value), switches=False), "set closed-loop velocity", f"{_M}204"
+    ),
+    "VEL?": Command(_of_axes(lambda s, a: _shown(s.velocity[a])), "get closed-loop velocity", f"{_M}204"),
+    "VER?": Command(_plain(lambda _: [f"flexstage: {__version__}"]), "get versions", f"{_M}204"),
+    "VOL?": Command(_signals(lambda s: s.volts), "get voltage of output channel"),
     "WAV": Command(_wave, "set waveform definition", f"{_E}108"),
     "WAV?": Command(_wave_lengths, "get waveform definition: lengths of wave tables", f"{_E}100"),
     "WCL": Command(_clear_waves, "clear wave table data", f"{_E}100"),
-    "WGC": Command(_set_cycles, "set number of wave generator cycles"),
-    "WGC?": Command(_of_generators(lambda s, g: str(s.generators[g].cycles)), "get number of wave generator cycles"),
+    "WGC": Command(_set_generators("cycles", lambda word: _integer(word, 0, 2**31)), "set number of wave generator cycles"),
+    "WGC?": Command(_of_generators(lambda g: g.cycles), "get number of wave generator cycles"),
     "WGO": Command(_generate, "set wave generator start/stop mode", f"{_E}66"),
-    "WGO?": Command(_of_generators(lambda s, g: str(int(s.generators[g].at is not None))), "get wave generator start/stop mode"),
-    "WOS": Command(_set_offset, "set wave generator output offset", f"{_E}100"),
-    "WOS?": Command(_of_generators(lambda s, g: _shown(s.generators[g].offset)), "get wave generator output offset"),
-    "WSL": Command(_connect_waves, "set connection of wave table to wave generator"),
-    "WSL?": Command(_of_generators(lambda s, g: str(s.generators[g].table)), "get connection of wave table"),
+    "WGO?": Command(_of_generators(lambda g: int(g.at is not None)), "get wave generator start/stop mode"),
+    "WOS": Command(_set_generators("offset", _number, idle=True), "set wave generator output offset", f"{_E}100"),
+    "WOS?": Command(_of_generators(lambda g: _shown(g.offset)), "get wave generator output offset"),
+    "WSL": Command(
+        _set_generators("table", lambda word: _integer(word, 0, _TABLES), idle=True), "set connection of wave table to wave generator"
+    ),
+    "WSL?": Command(_of_generators(lambda g: g.table), "get connection of wave table"),
     "WTR": Command(_set_wave_rate, "set wave generator table rate", f"{_E}108"),
     "WTR?": Command(
-        _of_generators(lambda s, g: f"{s.generators[g].rate} {int(s.generators[g].is_straight)}"),
+        _of_generators(lambda g: f"{g.rate} {int(g.is_straight)}"),
         "get wave generator table rate",
         f"{_E}108",
     ),

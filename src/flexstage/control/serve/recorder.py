@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.simulation.running import Stretch
+from flexstage.control.simulation.result import Series
 
 TABLES, POINTS = 8, 262_144
 """Tables, and points that they share alike."""
@@ -35,12 +35,17 @@ class Recorder:
         """Forget a table's points."""
         self.points[table] = np.empty(0)
 
-    def take(self, found: Stretch, scale: Array, volts: Array) -> None:
+    def take(self, found: Series, scale: Array, volts: Array) -> None:
         """Points of the samples that were run; `scale` (f,) is what SI units are multiplied by."""
         if not self._left:
             return
         rows = slice(self._skip, self._skip + self._left * self.rate, self.rate)
-        signals = {TARGET: found.wanted * scale, POSITION: found.pose * scale, ERROR: (found.wanted - found.pose) * scale, VOLTAGE: volts}
+        signals = {
+            TARGET: found.reference * scale,
+            POSITION: found.pose * scale,
+            ERROR: (found.reference - found.pose) * scale,
+            VOLTAGE: volts,
+        }
         taken = len(range(*rows.indices(len(volts))))
         for table, (source, option) in enumerate(zip(self.sources, self.options, strict=True)):
             if option != NOTHING:

@@ -2,80 +2,78 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.simulation.kernel import Compensator, converter, limiter
+from flexstage.control.hysteresis.models.inverse import inverse, inverse_state
 from flexstage.control.simulation.machine import Machine
 
 
-class Actuation:
-    """The actuators of a machine as they run: holds the strokes last given, the hysteresis and its inverse; at the bias at first."""
+def rounder(steps: Array) -> Callable[[Array], Array]:
+    """Return the rounding of numbers to multiples of `steps`, half to even; numbers without a step (0) pass.
 
-    __slots__ = (
-        "_bias",
-        "_compensator",
-        "_convert",
-        "_gain",
-        "_hysteresis",
-        "_last",
-        "_leaked",
-        "_limit",
-        "_modelled",
-        "_plain",
-        "_relief",
-        "_rest",
-        "_volts",
-    )
+    >>> rounder(np.array([0.0, 0.5]))(np.array([0.3, 1.7])).tolist()
+    [0.3, 1.5]
+    """
+    coarse, scale = steps > 0.0, np.where(steps > 0.0, steps, 1.0)
+    if not np.any(coarse):
+        return lambda values: values
+    return lambda values: np.where(coarse, np.rint(values / scale) * scale, values)
+
+
+class Actuation:
+    """The actuators of a machine as they run: the strokes last given, the hysteresis and the model of its inverse; at the bias at first.
+
+    >>> from dataclasses import replace
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> example = integral_loop()
+    >>> known = machine(example.plant, example.controller)
+    >>> known = replace(known, amplifiers=replace(known.amplifiers, high=np.array([1e-6])))
+    >>> [each.tolist() for each in Actuation(known)(np.array([3e-6]))]
+    [[3e-06], [1e-06], [1e-06]]
+    """
 
     def __init__(self, given: Machine) -> None:
-        bias, model, compensation = given.amplifiers.bias, given.hysteresis, given.compensation
-        self._convert = converter(given.amplifiers.step)
-        self._limit = limiter(given.amplifiers, given.step)
-        self._last, self._volts = np.zeros(len(given.actuators)), np.empty(len(given.actuators))
-        self._gain, self._bias = given.amplifiers.gain, bias
-        self._plain = model is None and compensation is None
-        self._compensator = None if compensation is None else Compensator(compensation, bias)
-        self._modelled = bias if compensation is None else compensation.step(compensation.start(bias), bias)[1]
-        self._hysteresis = None if model is None else model.stepper(model.start(bias))
-        self._rest = bias if model is None else model.step(model.start(bias), bias)[1]
-        self._relief, self._leaked = given.relief, np.zeros(len(given.actuators))
+        bias, model, stacks = given.amplifiers.bias, given.compensation, given.hysteresis
+        self._machine, self._convert, self._most = given, rounder(given.amplifiers.step), given.amplifiers.slew * given.step
+        self._is_slow = bool(np.any(np.isfinite(self._most)))
+        self._last = self._leaked = np.zeros(len(given.actuators))
+        if model is not None:
+            self._inverse, self._plays = inverse(model), model.start(bias)
+            self._modelled = model.step(self._plays, bias)[1]
+        if stacks is not None:
+            self._stacks = stacks.start(bias)
+            self._rest = stacks.step(self._stacks, bias)[1]
 
-    def __call__(self, command: Array, asked: Array, given: Array, stroke: Array) -> None:
-        """Take the command (m,) of the next sample; write what is asked of the amplifiers, what they give, and the free stroke [m].
+    def __call__(self, command: Array) -> tuple[Array, Array, Array]:
+        """Return what is asked of the amplifiers, what they give, and the free stroke (m,) [m] for the command of the next sample.
 
-        The place `given` must keep its numbers until the next call.
+        They are equal where there is neither an inverse nor a converter, limits or hysteresis.
         """
-        if self._compensator is None:
-            np.copyto(asked, command)
-        else:
-            self._invert(self._compensator, command, asked)
-        if self._convert is not None:
-            self._convert(asked, asked)
-        self._last = self._limit(asked, self._last, given)
-        if self._plain:
-            np.copyto(stroke, given)
-        else:
-            self._stretch(given, stroke)
+        powers, model = self._machine.amplifiers, self._machine.compensation
+        if model is not None:
+            wanted = self._inverse.step(inverse_state(model, self._plays), command + self._modelled)[1]
+            command = (wanted - powers.bias) * powers.gain
+        asked, last = self._convert(command), self._last
+        given = np.maximum(np.minimum(asked, powers.high), powers.low)
+        if self._is_slow:
+            given = np.maximum(np.minimum(given, last + self._most), last - self._most)
+        self._last = given
+        if model is not None:
+            self._plays, _ = model.step(self._plays, given / powers.gain + powers.bias)
+        return asked, given, given if self._machine.hysteresis is None else self._stretch(given)
 
-    def _invert(self, compensator: Compensator, command: Array, asked: Array) -> None:
-        """Strokes in proportion to the volts that make the command."""
-        np.add(command, self._modelled, out=asked)
-        compensator.volts(asked, asked)
-        np.subtract(asked, self._bias, out=asked)
-        np.multiply(asked, self._gain, out=asked)
-
-    def _stretch(self, given: Array, stroke: Array) -> None:
-        """Free strokes from what is given, counted from those at the bias."""
-        volts = np.divide(given, self._gain, out=self._volts)
-        np.add(volts, self._bias, out=volts)
-        if self._compensator is not None:
-            self._compensator.move_to(volts)
-        if self._hysteresis is None:
-            np.copyto(stroke, given)
-        else:
-            np.subtract(self._hysteresis(volts, stroke), self._rest, out=stroke)
-        if self._relief is not None:
+    def _stretch(self, given: Array) -> Array:
+        """Free strokes from those given, relative to the strokes at the bias."""
+        powers, stacks, relief = self._machine.amplifiers, self._machine.hysteresis, self._machine.relief
+        assert stacks is not None  # noqa: S101
+        self._stacks, stroke = stacks.step(self._stacks, given / powers.gain + powers.bias)
+        stroke = stroke - self._rest
+        if relief is not None:
             own = stroke - given
-            stroke += (1.0 - self._relief.residual_hysteresis) * (self._leaked - own)
-            self._leaked += self._relief.leak * (own - self._leaked)
+            stroke = stroke + (1.0 - relief.residual_hysteresis) * (self._leaked - own)
+            self._leaked = self._leaked + relief.leak * (own - self._leaked)
+        return stroke

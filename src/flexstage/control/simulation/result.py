@@ -102,8 +102,9 @@ def other_motions(found: Simulated, moved: str) -> dict[str, Excursion]:
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """What an engine computes, a row a sample; names as in `Simulated`."""
+    """What a loop computes, a row a sample; names as in `Simulated`."""
 
+    reference: Array
     pose: Array
     motions: Array
     command: Array
@@ -113,29 +114,29 @@ class Series:
     readings: Array
 
 
-def simulation_result(given: Machine, reference: Array, found: Series) -> Simulated:
-    """The result from what an engine computed.
+def simulation_result(given: Machine, found: Series) -> Simulated:
+    """The result from what a loop computed.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()
     >>> nothing = np.zeros((2, 1))
     >>> known = machine(example.plant, example.controller, motions=("platform.x",))
-    >>> simulation_result(known, nothing, Series(*(nothing,) * 7)).times.tolist()
+    >>> simulation_result(known, Series(*(nothing,) * 8)).times.tolist()
     [0.0, 0.0001]
     """
     amplifiers = given.amplifiers
     limited = found.given != found.asked
     at_end = limited & ((found.given == amplifiers.low) | (found.given == amplifiers.high))
     return Simulated(
-        times=given.step * np.arange(len(reference)),
+        times=given.step * np.arange(len(found.reference)),
         coordinates=given.coordinates,
         actuators=given.actuators,
         gauges=given.gauges,
         channels=given.motions,
-        reference=reference,
+        reference=found.reference,
         pose=found.pose,
-        error=reference - found.pose,
+        error=found.reference - found.pose,
         motions=found.motions,
         command=found.command,
         asked=found.asked,

@@ -1,100 +1,100 @@
-"""A loop that goes on: what `simulate` computes, sample after sample, with a reference that is only known as it comes."""
+"""A loop that runs, sample after sample: whole simulations, and loops whose reference is only known as it comes."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
-from flexstage.control.simulation.actuation import Actuation
+from flexstage.control.simulation.actuation import Actuation, rounder
 from flexstage.control.simulation.disturbances import inflow
-from flexstage.control.simulation.fused import parts
-from flexstage.control.simulation.kernel import reading_hold, rounder
 from flexstage.control.simulation.machine import Machine
-
-
-@dataclass(frozen=True, eq=False)
-class Stretch:
-    """Samples that were run, a row each: what was `wanted`, `pose` and strokes `given`, as in `Simulated`; `readings` of the gauges."""
-
-    wanted: Array
-    pose: Array
-    given: Array
-    readings: Array
+from flexstage.control.simulation.parts import parts
+from flexstage.control.simulation.result import Series
 
 
 class RunningLoop:
     """A machine at rest that is run on by `advance`.
 
-    `noise` are series (n,) by name as `simulate` takes them; at their end they run back to their beginning, which leaves their spectra as
-    they are. An axis that is not held takes what it reads for what is wanted: its error is nought, and nothing pulls it back.
+    `disturbances` are series (`count`,) by name as `simulate` takes them, by default as long as the longest; at their end they run back to
+    their beginning, which leaves the spectra of noise as they are. An axis that is not held takes its reading for its reference: its error
+    is zero, and nothing pulls it back.
     """
 
-    def __init__(self, given: Machine, noise: Mapping[str, Array]) -> None:
-        linear = parts(given)
-        length = max((len(each) for each in noise.values()), default=1)
-        entering = inflow(given, np.zeros((length, len(given.names))), noise)
-        self.machine = given
-        self._seen_noise = entering.disturbances @ linear.reading_w.T + entering.readings
-        self._moved = entering.disturbances @ linear.disturbed.T + entering.strokes @ linear.stroke.T
-        self._sight = np.ascontiguousarray(linear.reading)
-        self._plant = np.ascontiguousarray(np.hstack([linear.A, linear.stroke]))
-        self._command = np.ascontiguousarray(np.hstack([linear.command, linear.command_r, linear.command_q]))
-        self._next = np.ascontiguousarray(np.hstack([linear.controller, linear.from_reference, linear.from_pose, linear.from_applied]))
-        self._step = np.where(given.resolution > 0.0, given.resolution, 1.0)
-        self._sense, self._hold = rounder(given.resolution), reading_hold(given.reach / self._step)
+    def __init__(self, given: Machine, disturbances: Mapping[str, Array], count: int | None = None) -> None:
+        linear = self._linear = parts(given)
+        self._length = count or max((len(each) for each in disturbances.values()), default=1)
+        self.machine, self._entering = given, inflow(given, self._length, disturbances)
+        self._plant = np.hstack([linear.A, linear.stroke])
+        self._command = np.hstack([linear.command, linear.command_r, linear.command_q])
+        self._next = np.hstack([linear.controller, linear.from_reference, linear.from_pose, linear.from_applied])
+        f, m = len(given.names), len(given.actuators)
+        self._ends = np.cumsum([len(linear.A), m, len(linear.controller), f, f, m, m, m, m, len(given.gauges)])
+        self._sense = rounder(given.resolution)
         self.reset()
 
     def reset(self) -> None:
         """Put it back to rest."""
-        given, states = self.machine, len(self._next)
-        sizes = np.cumsum([0, states, *(len(given.names),) * 2, len(given.actuators)])
-        self._row, self._plant_row = np.zeros(sizes[-1]), np.zeros(self._plant.shape[1])
-        self._z, self._r, self._q, self._applied = (self._row[a:b] for a, b in pairwise(sizes))
-        self._x, self._stroke = self._plant_row[: len(self._plant)], self._plant_row[len(self._plant) :]
-        self._actuate, self._last = Actuation(given), np.zeros(len(given.gauges))
+        self._row = np.zeros(self._ends[-1])
+        self._actuate, self._taken = Actuation(self.machine), np.zeros(len(self.machine.gauges))
         self.count = 0
         """Samples since it was at rest."""
 
-    def advance(self, wanted: Array, held: Array) -> Stretch:
-        """Run as many samples as `wanted` (n, f) has rows, with the axes that are `held` (f,).
+    def advance(self, wanted: Array, held: Array | None = None) -> Series:
+        """Run as many samples as `wanted` (n, f) has rows, with the axes that are `held` (f,), by default all.
 
-        Raises `FloatingPointError` where numbers grow beyond bounds, and is then at rest.
+        Raises `DesignError` where its numbers grow beyond bounds, and puts the loop back to rest.
         """
-        n, given = len(wanted), self.machine
-        taken, poses = np.array(wanted, dtype=float), np.empty_like(wanted)
-        gave, readings = np.empty((n, len(given.actuators))), np.empty((n, len(given.gauges)))
-        free = None if np.all(held) else ~held
-        command, asked = np.empty(len(given.actuators)), np.empty(len(given.actuators))
-        places = self._noise_places(n)
+        linear, row, ends, reach, rows = self._linear, self._row, self._ends, self.machine.reach, np.empty((len(wanted), self._ends[-1]))
+        x, stroke, z, reference, pose, applied, command, asked, gives, reading = np.split(row, ends[:-1])
+        of_plant, known, of_control = row[: ends[1]], row[ends[1] : ends[4]], row[ends[1] : ends[5]]
+        places, entering = self._places(len(wanted)), self._entering
+        shaken, added = entering.disturbances[places], entering.strokes[places]
+        noises = shaken @ linear.reading_w.T + entering.readings[places]
+        drives = shaken @ linear.disturbed.T + added @ linear.stroke.T
         with np.errstate(over="ignore", invalid="ignore"):
-            for k, (seen_noise, moved) in enumerate(zip(self._seen_noise[places], self._moved[places], strict=True)):
-                counted = (self._sight @ self._x + seen_noise) / self._step
-                if self._sense is not None:
-                    counted = self._sense(counted, np.empty_like(counted))
-                readings[k] = counted * self._step
-                self._last = self._hold(counted, self._last)
-                np.dot(given.pose, self._last * self._step, out=self._q)
-                if free is not None:
-                    taken[k, free] = self._q[free]
-                self._r[:] = taken[k]
-                np.dot(self._command, self._row[: self._command.shape[1]], out=command)
-                self._actuate(command, asked, gave[k], self._stroke)
-                np.subtract(gave[k], asked, out=self._applied)
-                poses[k] = self._q
-                self._x[:] = self._plant @ self._plant_row + moved
-                self._z[:] = self._next @ self._row
-        self.count += n
-        if not (np.all(np.isfinite(self._x)) and np.all(np.isfinite(self._z))):
+            for out, asked_for, noise, drive in zip(rows, wanted, noises, drives, strict=True):
+                reading[:] = self._sense(linear.reading @ x + noise)
+                self._taken = np.where(np.abs(reading) <= reach, reading, self._taken)
+                pose[:] = self.machine.pose @ self._taken
+                reference[:] = asked_for if held is None else np.where(held, asked_for, pose)
+                command[:] = self._command @ known
+                asked[:], gives[:], stroke[:] = self._actuate(command)
+                applied[:] = gives - asked
+                out[:] = row
+                x[:] = self._plant @ of_plant + drive
+                z[:] = self._next @ of_control
+        self.count += len(wanted)
+        try:
+            require_finite(self.machine, rows[:, : ends[7]])
+        except DesignError:
             self.reset()
-            raise FloatingPointError
-        return Stretch(taken, poses, gave, readings)
+            raise
+        states, strokes, _, *signals, readings = np.split(rows, ends[:-1], axis=1)
+        motions = states @ linear.motion.T + (strokes + added) @ linear.motion_f.T + shaken @ linear.motion_w.T
+        references, poses, _, commands, all_asked, all_given = signals
+        return Series(references, poses, motions, commands, all_asked, all_given, strokes + added, readings)
 
-    def _noise_places(self, n: int) -> Array:
-        """Rows of the noise for the next samples: to its end and back."""
-        last = len(self._moved) - 1
+    def _places(self, n: int) -> Array:
+        """Rows of the disturbances for the next samples: to their end and back."""
+        last = self._length - 1
         turned = (self.count + np.arange(n)) % max(2 * last, 1)
         return np.where(turned > last, 2 * last - turned, turned)
+
+
+def require_finite(given: Machine, rows: Array) -> None:
+    """Raise `DesignError` where some of the rows (n, ...) are not finite, with the time at which the loop was lost.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> example = integral_loop()
+    >>> require_finite(machine(example.plant, example.controller), np.array([[0.0], [np.inf]]))
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: loop: its numbers have grown beyond bounds 0.0001 s after the start: the loop is unstable. ...
+    """
+    lost = ~np.all(np.isfinite(rows), axis=-1)
+    if np.any(lost):
+        what = f"its numbers have grown beyond bounds {int(np.argmax(lost)) * given.step:g} s after the start: the loop is unstable"
+        raise refuse("loop", what, "Lower the gains, or see the verdict on its stability for the mode that grows")

@@ -62,9 +62,9 @@ class DisturbedLoop:
     def begin(self, count: int) -> Callable[[Array], Array]:
         """A loop of so many samples that runs on by commanded poses and returns the pose, in the noise of number 0."""
         lead, series = self._noise(count, 0)
-        running, held = RunningLoop(self.machine, series), np.ones(len(self.machine.names), dtype=bool)
-        running.advance(np.zeros((lead, len(self.machine.names))), held)
-        return lambda commanded: running.advance(commanded, held).pose
+        running = RunningLoop(self.machine, series)
+        running.advance(np.zeros((lead, len(self.machine.names))))
+        return lambda commanded: running.advance(commanded).pose
 
     def _noise(self, count: int, number: int) -> tuple[int, Mapping[str, Array]]:
         """Samples before `count` others, and the noise of all of them."""

@@ -150,8 +150,9 @@ def _of_width(width: float) -> PrandtlIshlinskii:
 def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> BoucWen:
     """Bouc-Wen stacks side by side."""
     widths = np.broadcast_to(width, len(strokes)).tolist()
-    single = [bouc_wen(float(stroke), volts, share) for stroke, volts, share in zip(strokes, ranges, widths, strict=True)]
-    return BoucWen(*(np.concatenate([getattr(each, name) for each in single]) for name in ("gain", "lag", "beta", "gamma")))
+    kinds = list(zip(strokes.tolist(), ranges, widths, strict=True))
+    made = {kind: bouc_wen(*kind) for kind in set(kinds)}
+    return BoucWen(*(np.concatenate([getattr(made[kind], name) for kind in kinds]) for name in ("gain", "lag", "beta", "gamma")))
 
 
 def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:

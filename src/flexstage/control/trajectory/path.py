@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -13,14 +12,6 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
-
-
-@dataclass(frozen=True, eq=False)
-class Peaks:
-    """Largest speeds [m/s, rad/s] and accelerations [m/s^2, rad/s^2] of each coordinate (c,), either way; infinite where it jumps."""
-
-    speed: Array
-    acceleration: Array
 
 
 class Trajectory(Protocol):
@@ -46,10 +37,6 @@ class Trajectory(Protocol):
 
     def at(self, times: Array) -> Array:
         """Poses (n, c) at `times` (n,) [s]."""
-        ...
-
-    def peaks(self) -> Peaks:
-        """Largest speeds and accelerations."""
         ...
 
 

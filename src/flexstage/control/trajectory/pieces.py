@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,29 +27,6 @@ class Pieces:
         times = np.clip(np.asarray(times, dtype=float), self.knots[0], self.knots[-1])
         piece = np.clip(np.searchsorted(self.knots, times, side="right") - 1, 0, len(self.coefficients) - 1)
         return _polynomial(self.coefficients[piece], times - self.knots[piece], order)
-
-    def largest(self, order: int) -> Array:
-        """Largest absolute value (c,) of a derivative: of those at the ends of the pieces, and where the next derivative is 0."""
-        found = np.zeros(self.coefficients.shape[2])
-        for duration, coefficients in {(time, each.tobytes()): (time, each) for time, each in self._at_times}.values():
-            for column, values in enumerate(coefficients.T):
-                found[column] = max(found[column], _largest(np.polynomial.Polynomial(values).deriv(order), duration))
-        return found
-
-    @property
-    def _at_times(self) -> Iterator[tuple[float, Array]]:
-        """Durations and coefficients but for where a piece begins, which no derivative feels."""
-        moved = self.coefficients.copy()
-        moved[:, 0] = 0.0
-        yield from zip(np.diff(self.knots), moved, strict=True)
-
-
-def _largest(polynomial: np.polynomial.Polynomial, duration: float) -> float:
-    """Largest absolute value between 0 and a duration, with numbers counted in it, so that small and large are told apart."""
-    scaled = polynomial(np.polynomial.Polynomial([0.0, duration])).trim()
-    turning = scaled.deriv().roots()
-    inside = turning.real[(np.abs(turning.imag) < 1e-9) & (turning.real > 0.0) & (turning.real < 1.0)]
-    return float(np.max(np.abs(scaled(np.concatenate([[0.0, 1.0], inside])))))
 
 
 def _polynomial(coefficients: Array, times: Array, order: int) -> Array:
@@ -90,8 +67,8 @@ def smooth(start: Array, end: Array, time: float) -> Array:
     Largest speed 15/8 d/time, acceleration 10/3^(1/2) d/time^2.
 
     >>> move = join([(2.0, smooth(np.array([0.0]), np.array([1.0]), 2.0))])
-    >>> move.at(np.array([1.0, 2.0])).ravel().tolist(), move.largest(1).tolist()
-    ([0.5, 1.0], [0.9375])
+    >>> move.at(np.array([1.0, 2.0])).ravel().tolist()
+    [0.5, 1.0]
     """
     result = rest(start)
     for power, factor in ((3, 10.0), (4, -15.0), (5, 6.0)):

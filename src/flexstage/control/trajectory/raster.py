@@ -12,7 +12,6 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.control.trajectory.path import Peaks
 from flexstage.control.trajectory.pieces import Pieces, join, smooth, smooth_time
 from flexstage.mechanism.mechanism import PLATFORM
 
@@ -39,8 +38,8 @@ class Raster(CheckedFields):
     beyond the lines. Raises `DesignError` where the step of the pitch takes longer than flying back.
 
     >>> raster = Raster(length=10e-6, pitch=1e-6, lines=3, speed=1e-3, acceleration=20.0)
-    >>> round(raster.overshoot * 1e9, 6), round(float(raster.peaks().speed[0]), 12)  # turns are as slow as the step: 0.54 ms
-    (134.321241, 0.001)
+    >>> round(raster.overshoot * 1e9, 6)  # turns are as slow as the step: 0.54 ms
+    134.321241
     """
 
     length: float
@@ -95,10 +94,6 @@ class Raster(CheckedFields):
     def at(self, times: Array) -> Array:
         """Poses (n, 2) at `times` (n,) [s], fast coordinate first."""
         return self._pieces.at(np.asarray(times, dtype=float) - self.start)
-
-    def peaks(self) -> Peaks:
-        """Largest speeds and accelerations."""
-        return Peaks(self._pieces.largest(1), self._pieces.largest(2))
 
     @property
     def _swing(self) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
-from flexstage.control.trajectory.path import Peaks
 from flexstage.control.trajectory.pieces import join, smooth
 from flexstage.mechanism.mechanism import PLATFORM
 
@@ -48,12 +47,6 @@ class Sine(CheckedFields):
         phases = np.array([(self.phases or {}).get(name, 0.0) for name in self.amplitudes])
         waves = np.array(list(self.amplitudes.values())) * np.sin(2.0 * np.pi * self.frequency * passed[:, None] + phases)
         return np.where(passed[:, None] >= 0.0, waves, 0.0) * self._growth(passed)
-
-    def peaks(self) -> Peaks:
-        """Bounds of speeds and accelerations once it has started; with a fade they hold from the first moment on."""
-        size, turning = np.abs(list(self.amplitudes.values())), 2.0 * np.pi * self.frequency
-        rate, bend = (15.0 / 8.0 / self.fade, 10.0 / 3.0**0.5 / self.fade**2) if self.fade else (0.0, 0.0)
-        return Peaks(size * (turning + rate), size * (turning**2 + 2.0 * turning * rate + bend))
 
     def _growth(self, passed: Array) -> Array | float:
         if not self.fade:

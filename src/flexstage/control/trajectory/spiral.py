@@ -10,7 +10,6 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.control.trajectory.path import Peaks
 from flexstage.control.trajectory.pieces import Pieces, join
 from flexstage.mechanism.mechanism import PLATFORM
 
@@ -69,18 +68,6 @@ class Spiral(CheckedFields):
         passed = self._progress.at(np.asarray(times, dtype=float) - self.start)[:, 0]
         angle = _angle(passed / self._growth) if isinstance(self.pace, EvenSpeed) else passed
         return self._growth * angle[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-
-    def peaks(self) -> Peaks:
-        """Bounds of speed and acceleration along the path, jumps at a start or end without a ramp aside."""
-        grow, last = self._growth, self._last
-        if isinstance(self.pace, EvenSpeed):
-            speed, bend = self.pace.speed, 2.0 * self.pace.speed**2 / grow
-            along = speed / self.ramp if self.ramp else 0.0
-        else:
-            rate = 2.0 * np.pi * self.pace.turns
-            speed, bend = grow * rate * np.hypot(1.0, last), grow * rate**2 * np.hypot(2.0, last)
-            along = speed / self.ramp if self.ramp else 0.0
-        return Peaks(np.full(2, speed), np.full(2, bend + along))
 
     @property
     def _growth(self) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
-from flexstage.control.trajectory.path import Peaks
 from flexstage.control.trajectory.pieces import Pieces
 from flexstage.control.trajectory.profile import Limits, profile
 from flexstage.mechanism.mechanism import PLATFORM
@@ -46,14 +45,6 @@ class Step(CheckedFields):
         passed = np.asarray(times, dtype=float) - self.start
         share = 1.0 * (passed >= 0.0)[:, None] if self.limits is None else self._course(self.limits).at(passed) / self._length
         return share * self._target
-
-    def peaks(self) -> Peaks:
-        """Largest speeds and accelerations; infinite for a step at once."""
-        if self.limits is None:
-            jump = np.where(self._target != 0.0, np.inf, 0.0)
-            return Peaks(jump, jump)
-        course, share = self._course(self.limits), np.abs(self._target) / self._length
-        return Peaks(course.largest(1) * share, course.largest(2) * share)
 
     def _course(self, limits: Limits) -> Pieces:
         return profile(self._length, limits)

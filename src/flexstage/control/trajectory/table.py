@@ -12,7 +12,6 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.lazy import Late
 from flexstage.base.number import Array
-from flexstage.control.trajectory.path import Peaks
 from flexstage.experiment.records.record import Channel, Record
 from flexstage.experiment.records.unit import in_si, plain_unit
 from flexstage.mechanism.mechanism import PLATFORM
@@ -32,8 +31,8 @@ class Table:
     `source` says where it is from. Raises `DesignError` for times that do not rise, values that are not finite and shapes that do not fit.
 
     >>> way = Table(np.array([0.0, 1.0, 3.0]), np.array([[0.0], [2e-6], [0.0]]), ("x",))
-    >>> way.at(np.array([0.5, 2.0, 5.0])).ravel().tolist(), way.peaks().speed.tolist()
-    ([1e-06, 1e-06, 0.0], [2e-06])
+    >>> way.at(np.array([0.5, 2.0, 5.0])).ravel().tolist()
+    [1e-06, 1e-06, 0.0]
     """
 
     times: Array
@@ -54,12 +53,6 @@ class Table:
     def at(self, times: Array) -> Array:
         """Poses (n, c) at `times` (n,) [s]."""
         return np.stack([np.interp(times, self.times, column) for column in self.values.T], axis=-1)
-
-    def peaks(self) -> Peaks:
-        """Largest speeds; accelerations are infinite where the slope changes."""
-        slopes = np.diff(self.values, axis=0) / np.diff(self.times)[:, None]
-        moving = np.any(self.values != self.values[0], axis=0)
-        return Peaks(np.max(np.abs(slopes), axis=0), np.where(moving, np.inf, 0.0))
 
 
 def _findings(table: Table) -> list[Finding]:

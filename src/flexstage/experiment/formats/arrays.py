@@ -8,7 +8,7 @@ shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -17,14 +17,13 @@ import numpy as np
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
-from flexstage.experiment.records.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
-from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, assign, matches, number_names, select_names
-from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role, Samples, rising_problem
+from flexstage.experiment.records.clock import TIME_SCALES, Clock, clocked_record, determine_clock
+from flexstage.experiment.records.options import Arrays, Kind, Options, assign, matches, number_names
+from flexstage.experiment.records.record import Channel, ComputedSamples, InMemory, Record, Responses, Role, Samples, rising_problem
 from flexstage.experiment.records.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
 """What files written here say of themselves."""
-_BLOCK = 262_144
 _LISTED = 24
 _TIMED = "time = seconds({0}.Properties.RowTimes); samples = {0}.Variables; names = {0}.Properties.VariableNames"
 _SAVED = {
@@ -145,20 +144,11 @@ class Contents:
         return " ".join(self.texts(name))
 
 
-@dataclass(frozen=True, eq=False)
-class SideBySide:
+def side_by_side(sources: Sequence[Samples]) -> Samples:
     """Samples of several sources as one: their channels one after another."""
-
-    sources: tuple[Samples, ...]
-
-    @property
-    def length(self) -> int:
-        """Number of samples of each channel."""
-        return min(source.length for source in self.sources)
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded, of all sources."""
-        return np.hstack([source.read(start, stop) for source in self.sources])
+    return ComputedSamples(
+        min(source.length for source in sources), lambda start, stop: np.hstack([source.read(start, stop) for source in sources])
+    )
 
 
 def complex_of(real: Array, imaginary: Array) -> Array:
@@ -254,11 +244,10 @@ def _record(contents: Contents, chosen: tuple[Variable, ...], options: Options) 
     time = contents.vector(options.arrays.time)
     clock = _clock(contents, time, options)
     axes = _axes(contents, chosen, time, options)
-    samples = SideBySide(tuple(variable.samples(axis) for variable, axis in axes))
-    channels = assign(_channels(contents, axes, options.arrays), options, contents.where)
-    start = clock.start if time is not None else contents.number("start") or 0.0
-    whole = Record(channels, clock.rate, samples, start, name=contents.text("name"), source=contents.where)
-    return longest_stretch(whole.select(select_names(whole.names, options)) if options.only else whole, clock)
+    samples = side_by_side([variable.samples(axis) for variable, axis in axes])
+    clock = clock if time is not None else replace(clock, start=contents.number("start") or 0.0)
+    name, channels = contents.text("name"), _channels(contents, axes, options.arrays)
+    return clocked_record(channels, samples, clock, options, name=name, where=contents.where)
 
 
 def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock:
@@ -271,11 +260,7 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
     scale = TIME_SCALES.get(plain_unit(str(time.attributes.get("units", "s"))), 1.0)
     source = time.samples(int(np.argmax(time.shape)))
-    blocks = (source.read(first, min(first + _BLOCK, source.length))[:, 0] * scale for first in range(0, source.length, _BLOCK))
-    told = StatedClock(stated, allow_gaps=FaultTolerance.GAPS in options.accept_faults)
-    return determine_clock(
-        blocks, lambda number: float(source.read(number, number + 1)[0, 0]) * scale, told, f"{contents.where}: {time.name}"
-    )
+    return determine_clock(source, options, f"{contents.where}: {time.name}", scale=scale, stated=stated)
 
 
 def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | None, options: Options) -> list[tuple[Variable, int]]:

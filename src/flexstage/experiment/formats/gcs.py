@@ -10,7 +10,8 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.table.layout import Layout
 from flexstage.experiment.formats.table.values import TableSamples, index_lines
-from flexstage.experiment.records.options import FaultTolerance, Options, assign, number_names, select_names
+from flexstage.experiment.records.clock import Clock, clocked_record
+from flexstage.experiment.records.options import FaultTolerance, Options, number_names
 from flexstage.experiment.records.record import Channel, Record, Role
 
 _HEAD = 1 << 18
@@ -54,9 +55,9 @@ def read_gcs(path: Path, options: Options) -> tuple[Record, ...]:
     require(_column_findings(path, said, width))
     layout = Layout(names, ("",) * width, _separator(path, said), ".", start, len(lines) + 1, "latin-1", ())
     samples = _samples(path, said, layout, options)
-    channels = assign([Channel(name, "", _role(name)) for name in names], options, str(path))
-    record = Record(channels, options.rate or _rate(path, said), samples, name=_remark(lines), source=str(path))
-    return (record.select(select_names(record.names, options)) if options.only else record,)
+    channels = [Channel(name, "", _role(name)) for name in names]
+    clock = Clock(options.rate or _rate(path, said), 0.0, ((0, samples.length),))
+    return (clocked_record(channels, samples, clock, options, name=_remark(lines), where=str(path)),)
 
 
 def _header(path: Path) -> tuple[list[str], int]:

@@ -16,7 +16,7 @@ from flexstage.base.storage.store import atomic_write
 from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Variable, read_arrays
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.records.options import Options
-from flexstage.experiment.records.record import Record, Responses
+from flexstage.experiment.records.record import ComputedSamples, Record, Responses, Samples
 
 BLOCK = 65_536
 NUMBERS = frozenset("fiub")
@@ -42,37 +42,20 @@ class StoredArray:
         """The array."""
         return self._read(())
 
-    def samples(self, axis: int) -> StoredSamples:
-        """The array as samples along an axis, left in the file."""
-        return StoredSamples(self, axis)
+    def samples(self, axis: int) -> Samples:
+        """The array as samples along an axis, left in the file, as floats (n, channels)."""
 
-    def part(self, axis: int, start: int, stop: int) -> Array:
-        """The array from `start` to `stop` of an axis, the latter excluded."""
-        chosen = [(0, length) for length in self.shape]
-        chosen[axis] = (start, stop)
-        return self._read(tuple(reversed(chosen)) if self.turned else tuple(chosen))
+        def read(start: int, stop: int) -> Array:
+            chosen = [(0, length) for length in self.shape]
+            chosen[axis] = (start, min(stop, self.shape[axis]))
+            values = np.moveaxis(self._read(tuple(reversed(chosen)) if self.turned else tuple(chosen)), axis, 0)
+            return values.reshape(len(values), int(np.prod(values.shape[1:]))).astype(float, copy=False)
+
+        return ComputedSamples(self.shape[axis], read)
 
     def _read(self, spans: tuple[tuple[int, int], ...]) -> Array:
         values = self.file.read(self.dataset or self.name, spans, self.column)
         return values.T if self.turned else values
-
-
-@dataclass(frozen=True, eq=False)
-class StoredSamples:
-    """Samples along an axis of an array in an HDF5 file."""
-
-    array: StoredArray
-    axis: int
-
-    @property
-    def length(self) -> int:
-        """Number of samples of each channel."""
-        return self.array.shape[self.axis]
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded, as floats (n, channels)."""
-        values = np.moveaxis(self.array.part(self.axis, start, min(stop, self.length)), self.axis, 0)
-        return values.reshape(len(values), int(np.prod(values.shape[1:]))).astype(float, copy=False)
 
 
 def is_hdf(start: bytes, _suffix: str) -> bool:

@@ -51,7 +51,7 @@ class Samples(Protocol):
         """Number of samples of each channel."""
         ...
 
-    def read(self, start: int, stop: int) -> Array:
+    def read(self, start: int, stop: int, /) -> Array:
         """Samples `start` to `stop`, the latter excluded, as floats (n, channels)."""
         ...
 
@@ -77,60 +77,20 @@ class InMemory:
 
 
 @dataclass(frozen=True, eq=False)
-class ChosenChannels:
-    """Some channels of other samples, by their numbers and in their order."""
+class ComputedSamples:
+    """Samples that a function reads: `read(start, stop)` returns those of a block, the latter excluded, as floats (n, channels)."""
 
-    samples: Samples
-    columns: tuple[int, ...]
-
-    @property
-    def length(self) -> int:
-        """Number of samples of each channel."""
-        return self.samples.length
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded, of the chosen channels.
-
-        >>> ChosenChannels(InMemory(np.array([[1.0, 2.0]])), (1,)).read(0, 1).tolist()
-        [[2.0]]
-        """
-        return self.samples.read(start, stop)[:, self.columns]
-
-
-@dataclass(frozen=True, eq=False)
-class Stretch:
-    """A stretch of other samples."""
-
-    samples: Samples
-    start: int
     length: int
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop` of the stretch, the latter excluded.
-
-        >>> Stretch(InMemory(np.array([[1.0], [2.0], [3.0]])), 1, 2).read(0, 5).tolist()
-        [[2.0], [3.0]]
-        """
-        return self.samples.read(self.start + min(start, self.length), self.start + min(stop, self.length))
+    read: Callable[[int, int], Array]
 
 
-@dataclass(frozen=True, eq=False)
-class WatchedSamples:
-    """Other samples; `tell` is called with how far they were read, after each block."""
+def changed_samples(samples: Samples, change: Callable[[Array], Array]) -> Samples:
+    """Other samples with each block changed as it is read.
 
-    samples: Samples
-    tell: Callable[[int], None]
-
-    @property
-    def length(self) -> int:
-        """Number of samples of each channel."""
-        return self.samples.length
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded; tells `stop`."""
-        found = self.samples.read(start, stop)
-        self.tell(min(stop, self.length))
-        return found
+    >>> changed_samples(InMemory(np.array([[1.0, 2.0]])), lambda block: block[:, [1]]).read(0, 1).tolist()
+    [[2.0]]
+    """
+    return ComputedSamples(samples.length, lambda start, stop: change(samples.read(start, stop)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,7 +172,11 @@ class Record(InNotebook, CheckedFields):
         [[2.0]]
         """
         columns = self.columns(names)
-        return replace(self, channels=tuple(self.channels[column] for column in columns), samples=ChosenChannels(self.samples, columns))
+        return replace(
+            self,
+            channels=tuple(self.channels[column] for column in columns),
+            samples=changed_samples(self.samples, lambda block: block[:, columns]),
+        )
 
     def part(self, start: int, stop: int) -> Record:
         """The record from sample `start` to sample `stop`, the latter excluded.
@@ -222,7 +186,9 @@ class Record(InNotebook, CheckedFields):
         (0.5, [[2.0], [3.0]])
         """
         start, stop, _ = slice(start, stop).indices(self.length)
-        return replace(self, start=self.start + start / self.rate, samples=Stretch(self.samples, start, max(0, stop - start)))
+        source, length = self.samples, max(0, stop - start)
+        samples = ComputedSamples(length, lambda low, high: source.read(start + min(low, length), start + min(high, length)))
+        return replace(self, start=self.start + start / self.rate, samples=samples)
 
     def blocks(self, size: int, overlap: int = 0) -> Iterator[Array]:
         """The samples in blocks (size, channels), each beginning with the last `overlap` samples of the one before; the last may be short.
@@ -311,7 +277,13 @@ def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
     >>> sum(len(block) for block in long.blocks(2)), told
     (5, [2, 4, 5])
     """
-    return replace(record, samples=WatchedSamples(record.samples, tell))
+
+    def read(start: int, stop: int) -> Array:
+        found = record.samples.read(start, stop)
+        tell(min(stop, record.length))
+        return found
+
+    return replace(record, samples=ComputedSamples(record.length, read))
 
 
 @check_arguments

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 
-from flexstage.base.number import Array
 from flexstage.base.units import quantity as quantities
 from flexstage.base.units.dimension import Dimension, dimension_of
 from flexstage.base.units.quantity import Quantity
-from flexstage.experiment.records.record import Channel, Record, Samples
+from flexstage.experiment.records.record import Record, changed_samples
 
 _ABSENT = {"none", "n/a", "-", "unknown", "unitless", "[]", "()"}
 _SPELLINGS = (
@@ -65,43 +63,18 @@ def same_dimension(unit: str, other: str) -> bool:
     return dimension_of(unit).powers == dimension_of(other).powers
 
 
-@dataclass(frozen=True, eq=False)
-class ScaledSamples:
-    """Other samples with each channel multiplied by a factor."""
-
-    samples: Samples
-    factors: Array
-
-    @property
-    def length(self) -> int:
-        """Number of samples of each channel."""
-        return self.samples.length
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded, in the new units.
-
-        >>> from flexstage.experiment.records.record import InMemory
-        >>> ScaledSamples(InMemory(np.array([[1.0, 2.0]])), np.array([1.0, 1e-6])).read(0, 1).tolist()
-        [[1.0, 2e-06]]
-        """
-        return self.samples.read(start, stop) * self.factors
-
-
 def in_si(record: Record) -> Record:
     """The record with numbers and units in SI, scaled as they are read; a channel whose unit is absent or unknown stays as it is.
 
-    >>> from flexstage.experiment.records.record import in_memory
+    >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> metres = in_si(in_memory([Channel("S1", "um"), Channel("u1")], 1.0, np.array([[2.0, 3.0]])))
     >>> [channel.unit for channel in metres.channels], metres.values.tolist()
     (['m', ''], [[2e-06, 3.0]])
     """
-    channels, factors = _convert(record.channels)
-    return replace(record, channels=channels, samples=ScaledSamples(record.samples, np.array(factors)))
-
-
-def _convert(channels: Iterable[Channel]) -> tuple[tuple[Channel, ...], list[float]]:
-    both = [(channel, *_si(channel.unit)) for channel in channels]
-    return tuple(replace(channel, unit=unit) for channel, unit, _ in both), [factor for _, _, factor in both]
+    both = [_si(channel.unit) for channel in record.channels]
+    channels = tuple(replace(channel, unit=unit) for channel, (unit, _) in zip(record.channels, both, strict=True))
+    factors = np.array([factor for _, factor in both])
+    return replace(record, channels=channels, samples=changed_samples(record.samples, lambda block: block * factors))
 
 
 def _si(unit: str) -> tuple[str, float]:

@@ -27,7 +27,8 @@ def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str
     start = np.asarray(model.start(bias))
     head = [*table(f"{name}_rest", start)]
     if isinstance(model, PrandtlIshlinskii):
-        lines = _plays(name, model)
+        every = f"i = 0; i < {model.thresholds.shape[1]}; i++"
+        lines = _plays(name, model, f"{name}_move(", head=every, play="plays[i]")
     elif isinstance(model, BoucWen):
         lines = _bouc_wen(name, model)
     else:
@@ -36,25 +37,26 @@ def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str
     return [*head, *lines], State(name, start.shape, f"{name}_rest")
 
 
-def _plays(name: str, model: PrandtlIshlinskii) -> list[str]:
-    count = model.thresholds.shape[1]
+def _plays(name: str, model: PrandtlIshlinskii, call: str, *, head: str, play: str, loop: tuple[str, ...] = ()) -> list[str]:
+    """Tables of a model, and a function that sums its plays between its envelopes; in its loop the plays are called `play`."""
     before, after = (_envelope(f"{name}_{which}", each, model.axes) for which, each in (("before", model.before), ("after", model.after)))
     return [
         *table(f"{name}_thresholds", model.thresholds),
         *table(f"{name}_weights", model.weights),
         *before[0],
         *after[0],
-        f"static double {name}_move(double *plays, int axis, double value)",
+        f"static double {call}double *plays, int axis, double value)",
         "{",
         *indent(
             [
                 f"const double *thresholds = {name}_thresholds[axis], *weights = {name}_weights[axis];",
                 f"const double u = {before[1].format('value')};",
                 "double sum = 0.0;",
+                *loop[:1],
                 "int i;",
-                f"for (i = 0; i < {count}; i++) {{",
-                *indent(_CLAMPED.format("plays[i]").splitlines()),
-                "    sum += weights[i] * plays[i];",
+                f"for ({head}) {{",
+                *indent([*loop[1:], *_CLAMPED.format(play).splitlines()]),
+                f"    sum += weights[i] * {play};",
                 "}",
                 f"return {after[1].format('sum')};",
             ]
@@ -71,11 +73,9 @@ def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]
     """Tables and function of an envelope, and the expression of its value; nothing for the identity."""
     if envelope is IDENTITY:
         return [], "{}"
-    slopes = np.broadcast_to(envelope.slopes, (axes, envelope.slopes.shape[1]))
-    knots = np.broadcast_to(envelope.knots[:, :-1], slopes.shape)
-    changes = np.concatenate([slopes[:, :1], np.diff(slopes)], axis=1)
+    changes = np.broadcast_to(envelope.changes, (axes, envelope.changes.shape[1]))
     lines = [
-        *table(f"{name}_knots", knots),
+        *table(f"{name}_knots", np.broadcast_to(envelope.knots[:, :-1], changes.shape)),
         *table(f"{name}_changes", changes),
         *table(f"{name}_start", np.broadcast_to(envelope.values[:, 0], (axes,))),
         f"static double {name}(int axis, double x)",
@@ -85,7 +85,7 @@ def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]
                 f"const double *knots = {name}_knots[axis], *changes = {name}_changes[axis];",
                 "double sum = changes[0] * (x - knots[0]);",
                 "int i;",
-                f"for (i = 1; i < {slopes.shape[1]}; i++)",
+                f"for (i = 1; i < {changes.shape[1]}; i++)",
                 "    if (x > knots[i]) sum += changes[i] * (x - knots[i]);",
                 f"return {name}_start[axis] + sum;",
             ]
@@ -103,33 +103,14 @@ def hysteresis_inverse(name: str, model: PrandtlIshlinskii) -> list[str]:
     >>> hysteresis_inverse("model", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]))[-1]
     '}'
     """
-    turned, count = inverse(model), model.thresholds.shape[1]
-    before, after = (_envelope(f"{name}_{which}", each, model.axes) for which, each in (("enter", turned.before), ("leave", turned.after)))
-    return [
-        *table(f"{name}_inverse_thresholds", turned.thresholds),
-        *table(f"{name}_inverse_weights", turned.weights),
-        *table(f"{name}_partial", np.cumsum(model.weights, axis=1)),
-        *before[0],
-        *after[0],
-        f"static double {name}_invert(const double *plays, int axis, double value)",
-        "{",
-        *indent(
-            [
-                f"const double *thresholds = {name}_inverse_thresholds[axis], *weights = {name}_inverse_weights[axis];",
-                f"const double u = {before[1].format('value')};",
-                "double sum = 0.0, behind = 0.0, play;",
-                "int i;",
-                f"for (i = {count} - 1; i >= 0; i--) {{",
-                f"    play = {name}_partial[axis][i] * plays[i] + behind;",
-                f"    behind += {name}_weights[axis][i] * plays[i];",
-                *indent(_CLAMPED.format("play").splitlines()),
-                "    sum += weights[i] * play;",
-                "}",
-                f"return {after[1].format('sum')};",
-            ]
-        ),
-        "}",
-    ]
+    loop = (
+        "double behind = 0.0, play;",
+        f"play = {name}_partial[axis][i] * plays[i] + behind;",
+        f"behind += {name}_weights[axis][i] * plays[i];",
+    )
+    head = f"i = {model.thresholds.shape[1]} - 1; i >= 0; i--"
+    partial = table(f"{name}_partial", np.cumsum(model.weights, axis=1))
+    return [*partial, *_plays(f"{name}_inverse", inverse(model), f"{name}_invert(const ", head=head, play="play", loop=loop)]
 
 
 def _bouc_wen(name: str, model: BoucWen) -> list[str]:

@@ -1,84 +1,83 @@
-"""The whole controller as C where legs have force feedback: the pose every so many samples, the legs in each of them."""
+"""Force feedback in the legs as C: in a controller that is stepped as they are, or a function beside the step of the pose."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from flexstage.base.number import Array
 from flexstage.control.damping.sampled import SampledLegs
-from flexstage.control.export.code.code import Code, statements
-from flexstage.control.export.code.controller import clamp, has_range, has_slew, has_volts
-from flexstage.control.export.code.program import Program, Signal, State
+from flexstage.control.export.code.controller import LARGEST, bounded, has_volts, limited
+from flexstage.control.export.code.precision import Precision
+from flexstage.control.export.code.product import Code
+from flexstage.control.export.code.program import Program, ProgramFunction, ProgramSetting, Signal, State
 from flexstage.control.export.code.text import indent, number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.models.linear.model import Channel
 
-_LARGEST = number(np.finfo(float).max)
-_STATUS = "for each tension: 0 taken; 1 it is no finite number, the last good one is held"
+_SWEPT, _LARGEST = 200, 1e-6
 
 
 def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
-    """A controller's program with the inner loops in it, stepped every `legs.step`; what it tells of the pose stays in between.
+    """A controller's program with the inner loops in it, stepped every `legs.step`; what it gives of the pose stays in between.
 
-    Further inputs are the `tension.<actuator>` [N]; further outputs what is `added` by the inner loops, the `total` stroke within the
-    amplifiers' limits (`volts`, where they are told, are its), and what became of each tension.
+    Further inputs are `tension.<actuator>` [N], positive where a leg is pulled; outputs `added`, what force feedback adds to the strokes,
+    and `total`, the strokes of both loops within what the amplifiers give; `volts` are those of the total. A tension that is no finite
+    number is held, and `tension_status` says so.
     """
     strokes = {channel.name: channel for channel in given.strokes()}
-    own = [strokes[name] for name in legs.actuators]
+    own, total = [strokes[name] for name in legs.actuators], given.strokes("total.")
+    further = (
+        Signal("added", tuple(Channel(f"added.{each.name}", each.unit) for each in own), "added by force feedback"),
+        Signal("total", total, "strokes of both loops, within what the amplifiers give"),
+        Signal("tension_status", tuple(Channel(f"status.tension.{each.name}", "1") for each in own), _STATUS),
+    )
+    before = f"One call of the step every {outer.step:.12g} s"
+    about = (*(line.replace(before, "Loop of the pose") for line in outer.about), _about(legs))
+    inner = _settings(given, legs)
+    tables = [line for each in inner for line in table(each.field, bounded(each, Precision.DOUBLE).values)]
+    held = [State(f"held_{each.field}", (len(each.channels),)) for each in outer.outputs]
     return replace(
         outer,
-        about=(
-            *(line.replace(f"One call of the step every {outer.step:.12g} s", "Loop of the pose") for line in outer.about),
-            _about(legs),
-        ),
+        about=about,
         step=legs.step,
         inputs=(*outer.inputs, Signal("tension", tuple(Channel(f"tension.{each.name}", "N") for each in own), "tensions of the legs")),
-        outputs=(
-            *outer.outputs,
-            Signal("added", tuple(Channel(f"added.{each.name}", each.unit) for each in own), "added by force feedback"),
-            Signal("total", given.strokes("total."), "strokes of both loops, within what the amplifiers give"),
-            Signal("tension_status", tuple(Channel(f"status.tension.{each.name}", "1") for each in own), _STATUS),
-        ),
-        states=(*outer.states, *_states(outer, legs, len(given.actuators))),
-        code=Code(outer.code.tables) + _tables(given, legs) + _sample(outer, given, legs),
+        outputs=(*outer.outputs, *further),
+        states=(*outer.states, State("turn", (1,)), *_states(given, legs), *held),
+        code=Code((*outer.code.tables, *tables), tuple(_sample(outer, given, legs))),
     )
 
 
-def _period(step: float) -> str:
-    return f"One call of the step every {step:.12g} s"
+_STATUS = "for each tension: 0 taken; 1 it is no finite number, the last good one is held"
 
 
 def _about(legs: SampledLegs) -> str:
     first = f"of {legs.turns} the first runs the loop of the pose, every {legs.turns * legs.step:.12g} s, from the readings of then"
     return (
-        f"{_period(legs.step)}: {first}; all run force feedback in the legs of {', '.join(legs.actuators)}. "
+        f"One call of the step every {legs.step:.12g} s: {first}; all run force feedback in the legs of {', '.join(legs.actuators)}. "
         "Tension counts positive; total is what the amplifiers shall give."
     )
 
 
-def _states(outer: Program, legs: SampledLegs, actuators: int) -> tuple[State, ...]:
-    count = len(legs.actuators)
-    inner = (
-        State("turn", (1,)),
-        State("tension", (count,)),
-        State("slow", (count,)),
-        State("slower", (count,)),
-        State("total", (actuators,)),
+def _states(given: Machine, legs: SampledLegs) -> tuple[State, ...]:
+    own = (State(each, (len(legs.actuators),)) for each in ("tension", "slow", "slower"))
+    return (*own, State("total", (len(given.actuators),)))
+
+
+def _settings(given: Machine, legs: SampledLegs) -> tuple[ProgramSetting, ...]:
+    named = ", ".join(legs.actuators)
+    return (
+        ProgramSetting("leg", legs.gains, f"g / (a k) of the legs {named} [m/N]"),
+        ProgramSetting("quick", given.amplifiers.slew * legs.step, "largest change of both loops together in a sample of the legs"),
     )
-    return (*inner, *(State(f"held_{each.field}", (len(each.channels),)) for each in outer.outputs))
 
 
-def _tables(given: Machine, legs: SampledLegs) -> Code:
-    lines = table("leg", legs.gains)
-    lines += table("quick", given.amplifiers.slew * legs.step) if has_slew(given) else []
-    return Code(tuple(lines))
-
-
-def _sample(outer: Program, given: Machine, legs: SampledLegs) -> Code:
-    keeps = [(each.field, len(each.channels)) for each in outer.outputs]
-    places = [given.actuators.index(name) for name in legs.actuators]
-    return statements(
+def _sample(outer: Program, given: Machine, legs: SampledLegs) -> list[str]:
+    keeps, places, m = [(each.field, len(each.channels)) for each in outer.outputs], _places(given, legs), len(given.actuators)
+    volts = ["out->volts[j] += (stroke - out->given[j]) * per_metre[j];"] if has_volts(given) else []
+    return [
         "int j;",
         "if (state->turn[0] == 0.0) {",
         *indent(outer.code.body),
@@ -88,52 +87,118 @@ def _sample(outer: Program, given: Machine, legs: SampledLegs) -> Code:
         "}",
         f"state->turn[0] = state->turn[0] + 1.0 < {number(legs.turns)} ? state->turn[0] + 1.0 : 0.0;",
         f"for (j = 0; j < {len(places)}; j++) {{",
-        *indent(_one_leg(legs)),
+        f"    out->tension_status[j] = {_good('in->tension[j]', LARGEST)} ? 0.0 : 1.0;",
+        *indent(_one_leg(legs, "out->added[j]", "leg[j]", "in->tension[j]", place="j", largest=LARGEST)),
         "}",
-        f"for (j = 0; j < {len(given.actuators)}; j++) out->total[j] = out->given[j];",
+        f"for (j = 0; j < {m}; j++) out->total[j] = out->given[j];",
         *(f"out->total[{place}] += out->added[{leg}];" for leg, place in enumerate(places)),
-        f"for (j = 0; j < {len(given.actuators)}; j++) {{",
-        *indent(_total(given)),
+        f"for (j = 0; j < {m}; j++) {{",
+        "    double stroke = out->total[j];",
+        f"    if (!({_good('stroke', LARGEST)})) stroke = state->total[j];",
+        *indent([*limited("", "quick", "total", "j"), "out->total[j] = state->total[j] = stroke;", *volts]),
         "}",
+    ]
+
+
+def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Precision) -> Program:
+    """A program with settings and a further function, `<name>_damp`, for the inner loops in samples of their own."""
+    m, largest, places = len(given.actuators), number(precision.largest), _places(given, legs)
+    volts = [f", double volts[{m}]", "volts[i] = stroke * per_metre[i] + bias[i];"] if has_volts(given) else ["", ""]
+    sizes = f"const double tension[{len(places)}], double total[{m}]{volts[0]}"
+    call = f"void {outer.name}_damp({outer.name}_state *state, const {outer.name}_parameters *set, {sizes})"
+    flops = (6 if legs.order == 1 else 12) * len(places) + 5 * m
+    notes = (
+        f"Force feedback in the legs of {', '.join(legs.actuators)}. Call it every {legs.step:.12g} s, {legs.turns} times to one of "
+        f"the step: {flops} additions and multiplications from tensions [N] to the strokes of both loops within what "
+        "the amplifiers give. These go to them, not what the step gives."
+    )
+    body = (
+        f"double added[{m}] = {{0.0}}, gives[{len(places)}] = {{0.0}};",
+        "int i;",
+        f"for (i = 0; i < {len(places)} && set->enable; i++) {{",
+        *indent(_one_leg(legs, "gives[i]", "set->leg[i]", "tension[i]", place="i", largest=largest)),
+        "}",
+        *(f"added[{place}] = gives[{leg}];" for leg, place in enumerate(places)),
+        f"for (i = 0; i < {m}; i++) {{",
+        "    double stroke = state->last[i] + added[i];",
+        f"    if (!({_good('stroke', largest)}) || !set->enable) stroke = state->total[i];",
+        *indent([*limited("set->", "quick", "total", "i"), "total[i] = state->total[i] = stroke;", volts[1]]),
+        "}",
+    )
+    return replace(
+        outer,
+        states=(*outer.states, *_states(given, legs)),
+        settings=(*(outer.settings or ()), *(bounded(each, precision) for each in _settings(given, legs))),
+        functions=(*outer.functions, ProgramFunction(call, body, notes)),
     )
 
 
-def _one_leg(legs: SampledLegs) -> list[str]:
-    return [
-        "double entry, slow;",
-        f"out->tension_status[j] = fabs(in->tension[j]) <= {_LARGEST} ? 0.0 : 1.0;",
-        f"if (fabs(in->tension[j]) <= {_LARGEST}) state->tension[j] = in->tension[j];",
-        *law_lines(legs, "out->added[j]", "leg[j]", "j"),
-    ]
+def _places(given: Machine, legs: SampledLegs) -> list[int]:
+    return [given.actuators.index(name) for name in legs.actuators]
 
 
-def law_lines(legs: SampledLegs, target: str, gain: str, place: str) -> list[str]:
-    """Statements of a leg's law, with `entry` and `slow` declared: to a target from `state->tension`, on with `state->slow` and `slower`.
+def _good(value: str, largest: str) -> str:
+    """Whether a number is finite; a comparison with NaN is false."""
+    return f"{value} <= {largest} && {value} >= -{largest}"
 
-    >>> law_lines(SampledLegs(("B",), np.ones(1), 0.25, 1, 1e-4, 1), "y", "g", "0")[0]
-    'entry = 0.25 * g * state->tension[0];'
-    """
+
+def _one_leg(legs: SampledLegs, target: str, gain: str, tension: str, *, place: str, largest: str) -> list[str]:
+    """Statements of a leg's law: from a tension to a target, on with `state->slow` and `slower`."""
     share, twice = number(legs.share), number(2.0 * legs.share)
-    lines = [
-        f"entry = {share} * {gain} * state->tension[{place}];",
-        f"slow = entry + state->slow[{place}];",
-        f"state->slow[{place}] = entry + slow - {twice} * slow;",
-        f"{target} = slow;",
-    ]
-    if legs.order == 1:
-        return lines
-    return [
-        *lines,
+    second = [
         f"entry = {share} * slow;",
         f"slow = entry + state->slower[{place}];",
         f"state->slower[{place}] = entry + slow - {twice} * slow;",
         f"{target} -= slow;",
     ]
+    return [
+        "double entry, slow;",
+        f"if ({_good(tension, largest)}) state->tension[{place}] = {tension};",
+        f"entry = {share} * {gain} * state->tension[{place}];",
+        f"slow = entry + state->slow[{place}];",
+        f"state->slow[{place}] = entry + slow - {twice} * slow;",
+        f"{target} = slow;",
+        *(second if legs.order > 1 else []),
+    ]
 
 
-def _total(given: Machine) -> list[str]:
-    lines = ["double stroke = out->total[j];", f"if (!(fabs(stroke) <= {_LARGEST})) stroke = state->total[j];"]
-    lines += clamp("high[j]", "low[j]") if has_range(given) else []
-    lines += clamp("state->total[j] + quick[j]", "state->total[j] - quick[j]") if has_slew(given) else []
-    lines.append("out->total[j] = state->total[j] = stroke;")
-    return [*lines, *(["out->volts[j] += (stroke - out->given[j]) / gain[j];"] if has_volts(given) else [])]
+def legs_test(given: Machine, legs: SampledLegs, name: str) -> Sequence[str]:
+    """A function that replays tensions, which sweep up to a tenth of the rate: how far strokes are from those of the law."""
+    tensions, wanted = _swept(given, legs)
+    m, volts = len(given.actuators), ", volts" if has_volts(given) else ""
+    return [
+        *table("tension", tensions),
+        *table("both", wanted),
+        "",
+        f"double {name}_legs_worst(void);",
+        f"double {name}_legs_worst(void)",
+        "{",
+        f"    static {name}_state state;",
+        f"    static {name}_parameters set;",
+        f"    static double total[{m}]{f', volts[{m}]' if volts else ''};",
+        "    double worst = 0.0;",
+        "    int k, i;",
+        f"    {name}_init(&state, &set);",
+        "    set.enable = 1;",
+        f"    for (i = 0; i < {m}; i++) set.quick[i] = set.high[i] = 1.0, set.low[i] = -1.0;",
+        f"    for (k = 0; k < {_SWEPT}; k++) {{",
+        f"        {name}_damp(&state, &set, tension[k], total{volts});",
+        f"        for (i = 0; i < {m}; i++) {{",
+        "            const double off = total[i] - both[k][i];",
+        "            if (!(off <= worst && off >= -worst)) worst = off < 0.0 ? -off : off;",
+        "        }",
+        "    }",
+        f"    return worst / {number(float(np.max(np.abs(wanted))))};",
+        "}",
+        "",
+    ]
+
+
+def _swept(given: Machine, legs: SampledLegs) -> tuple[Array, Array]:
+    """Tensions (n, legs), and the strokes (n, actuators) of them, a micrometre at most."""
+    times = np.arange(_SWEPT)[:, None]
+    tensions = np.sin(0.1 * np.pi * times**2 / _SWEPT + np.arange(len(legs.gains))) / legs.gains
+    wanted = np.zeros((_SWEPT, len(given.actuators)))
+    wanted[:, _places(given, legs)] = legs.strokes(tensions)
+    size = _LARGEST / float(np.max(np.abs(wanted)))
+    return size * tensions, size * wanted

@@ -25,7 +25,12 @@ class Precision(Enum):
     @property
     def bytes(self) -> int:
         """Bytes of a number."""
-        return 4 if self is Precision.SINGLE else 8
+        return np.dtype(self.value).itemsize
+
+    @property
+    def digits(self) -> int:
+        """Binary digits behind the first."""
+        return int(np.finfo(self.value).nmant)
 
     @property
     def tolerance(self) -> float:
@@ -35,21 +40,15 @@ class Precision(Enum):
     @property
     def largest(self) -> float:
         """The largest number."""
-        return float(np.finfo(np.float32 if self is Precision.SINGLE else np.float64).max)
+        return float(np.finfo(self.value).max)
 
 
-def typed(lines: Sequence[str], precision: Precision) -> str:
+def typed(text: str, precision: Precision) -> str:
     """Text in a precision: constants and their type."""
-    text = "\n".join(lines) + "\n"
     if precision is Precision.DOUBLE:
         return text
-    text = re.sub(r"\bdouble\b", "float", text)
-    return _CONSTANT.sub(r"\1f", _apart(text)).replace("\0", "")
-
-
-def _apart(text: str) -> str:
-    """Numbers in comments are left as they are: marked so that they are no numbers."""
-    return re.sub(r"/\*.*?\*/", lambda match: re.sub(r"(\d)", "\\1\0", match.group()), text, flags=re.DOTALL)
+    marked = re.sub(r"/\*.*?\*/", lambda comment: re.sub(r"(\d)", "\\1\0", comment.group()), text, flags=re.DOTALL)  # no constants
+    return _CONSTANT.sub(r"\1f", re.sub(r"\bdouble\b", "float", marked)).replace("\0", "")
 
 
 def count_constants(lines: Sequence[str]) -> int:

@@ -1,18 +1,17 @@
-"""Products of matrices and vectors in C: written out where few entries are not nought, by a table where many are."""
+"""Code in C: tables at the file's level, statements that use them; products of matrices and vectors."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.export.code.code import Code
 from flexstage.control.export.code.text import number, table, wrap
 
-_WRITTEN_OUT = 200
-"""Entries; more would not stay in a processor's memory for instructions."""
-_ROWS = 8
+_SPARSE, _FEW, _ROWS = 0.2, 36, 8
+"""A matrix with more entries that are not zero, or a larger share of them, is a table."""
 MULTIPLY = (
     "/* sum += matrix vector; the matrix by groups of eight rows, each column by column: a compiler keeps eight sums at once. */",
     "static void multiply(const double *matrix, int groups, int columns, const double *vector, double *sum)",
@@ -35,18 +34,43 @@ Term = tuple[Array, str]
 """A matrix (rows, n) and the name of the vector it is applied to."""
 
 
+@dataclass(frozen=True)
+class Code:
+    """Tables and functions at the file's level, statements of the body that use them, and additions and multiplications of these."""
+
+    tables: tuple[str, ...] = ()
+    body: tuple[str, ...] = ()
+    flops: int = 0
+
+
 def product(name: str, target: str, terms: Iterable[Term], size: int) -> Code:
     """target[i] = sum over the terms of matrix[i, j] vector[j], for i below `size`; tables are called after `name`.
 
-    Entries that are 0 are left out where the product is written out, in the order of the columns.
+    Sparse matrices are written out, dense ones are tables.
 
-    >>> product("sum", "y", [(np.array([[1.0, 0.0], [2.0, -0.5]]), "x")], 2).body
-    ('y[0] = x[0];', 'y[1] = 2.0 * x[0] - 0.5 * x[1];')
+    >>> product("seen", "y", [(np.array([[2.0, 0.0], [0.0, -1.0]]), "x")], 2).body
+    ('y[0] = 2.0 * x[0];', 'y[1] = -x[1];')
     """
-    used = tuple((matrix, vector) for matrix, vector in terms if np.any(matrix))
-    if sum(np.count_nonzero(matrix) for matrix, _ in used) <= _WRITTEN_OUT:
-        return Code(body=tuple(line for row in range(size) for line in wrap(f"{target}[{row}] = {_sum(used, row)};")))
-    return _by_tables(name, target, used, size)
+    used = [(np.asarray(matrix), vector) for matrix, vector in terms if np.any(matrix)]
+    counts = [int(np.count_nonzero(matrix)) for matrix, _ in used]
+    is_dense = [count > _FEW and count > _SPARSE * matrix.size for count, (matrix, _) in zip(counts, used, strict=True)]
+    sparse = [term for term, dense in zip(used, is_dense, strict=True) if not dense]
+    body = [line for row in range(size) for line in wrap(f"{target}[{row}] = {_sum(sparse, row)};")]
+    tables: list[str] = []
+    groups = -(-size // _ROWS)
+    for place, (matrix, vector) in enumerate(term for term, dense in zip(used, is_dense, strict=True) if dense):
+        padded = np.zeros((groups * _ROWS, matrix.shape[1]))
+        padded[:size] = matrix
+        tables += table(f"{name}_{place}", padded.reshape(groups, _ROWS, -1).transpose(0, 2, 1).reshape(-1, _ROWS))
+        body += [
+            "{",
+            f"    double sum[{_ROWS * groups}] = {{0.0}};",
+            f"    multiply(&{name}_{place}[0][0], {groups}, {matrix.shape[1]}, {vector}, sum);",
+            f"    for (int row = 0; row < {size}; row++) {target}[row] += sum[row];",
+            "}",
+        ]
+    flops = sum(2 * (matrix.size if dense else count) for count, dense, (matrix, _) in zip(counts, is_dense, used, strict=True))
+    return Code(tuple(tables), tuple(body), flops)
 
 
 def _sum(terms: Sequence[Term], row: int) -> str:
@@ -58,15 +82,3 @@ def _sum(terms: Sequence[Term], row: int) -> str:
             factor = "" if abs(value) == 1.0 else f"{number(abs(value))} * "
             text += f"{sign}{factor}{vector}[{column}]"
     return text or "0.0"
-
-
-def _by_tables(name: str, target: str, terms: Sequence[Term], size: int) -> Code:
-    groups = -(-size // _ROWS)
-    tables: list[str] = []
-    body = ["{", f"    double sum[{_ROWS * groups}] = {{0.0}};"]
-    for count, (matrix, vector) in enumerate(terms, 1):
-        grouped = np.zeros((groups * _ROWS, matrix.shape[1]))
-        grouped[:size] = matrix
-        tables += table(f"{name}_{count}", grouped.reshape(groups, _ROWS, -1).transpose(0, 2, 1).reshape(-1, _ROWS))
-        body.append(f"    multiply(&{name}_{count}[0][0], {groups}, {matrix.shape[1]}, {vector}, sum);")
-    return Code(tuple(tables), (*body, f"    for (int row = 0; row < {size}; row++) {target}[row] = sum[row];", "}"))

@@ -1,13 +1,13 @@
-"""A program of C that is stepped: its signals, its state, its text."""
+"""A program of C that is stepped: its signals, its state, its settings, its text."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from flexstage.control.export.code.code import Code
-from flexstage.control.export.code.product import MULTIPLY
-from flexstage.control.export.code.text import comment, indent, number
+from flexstage.base.number import Array
+from flexstage.control.export.code.product import MULTIPLY, Code
+from flexstage.control.export.code.text import comment, indent, number, table
 from flexstage.models.linear.model import Channel
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
@@ -26,19 +26,38 @@ class Signal:
 
 @dataclass(frozen=True)
 class State:
-    """A group of numbers kept from step to step: `field`, sizes of its axes, and what they begin with (absent: nought)."""
+    """A group of numbers kept from step to step: `field`, sizes of its axes, and the table they begin with (absent: zero)."""
 
     field: str
     sizes: tuple[int, ...]
     start: str | None = None
 
 
+@dataclass(frozen=True, eq=False)
+class ProgramSetting:
+    """A group of numbers that may be changed between two steps: `field`, the values they begin with, and what they mean."""
+
+    field: str
+    values: Array
+    meaning: str = ""
+
+
+@dataclass(frozen=True)
+class ProgramFunction:
+    """A further function of a program: how it is called, the lines of its body, and notes."""
+
+    call: str
+    body: tuple[str, ...]
+    notes: str
+
+
 @dataclass(frozen=True)
 class Program:
     """C99 of fixed step: `code` whose body is run every `step` [s].
 
-    In the body the inputs are `in->field[i]`, outputs `out->field[i]`, states `state->field[i]`. No heap, nothing but math.h; `init` and
-    `step` are its functions. `about` heads both files. Empty groups are left out, for C has no arrays of size 0.
+    The header declares `<name>_input`, `_output`, `_state`, `<name>_init(state)` and `<name>_step(state, in, out)`; all numbers are
+    doubles, in SI. There is no heap and nothing is static but tables. With `settings` both take `<name>_parameters` too: those numbers,
+    and whether it is enabled; then nothing of a library is called.
     """
 
     name: str
@@ -48,11 +67,14 @@ class Program:
     outputs: tuple[Signal, ...]
     states: tuple[State, ...]
     code: Code
+    settings: tuple[ProgramSetting, ...] | None = None
+    functions: tuple[ProgramFunction, ...] = ()
 
     @property
     def header(self) -> str:
         """Text of the header, `<name>.h`."""
         guard, name = f"{self.name.upper()}_H", self.name
+        init, step = self._calls
         lines = [
             *(line for text in self.about for line in comment(text)),
             f"#ifndef {guard}",
@@ -65,14 +87,16 @@ class Program:
             *comment("Time between two calls of the step [s]: the caller sees to it."),
             f"#define {name.upper()}_PERIOD {number(self.step)}",
             "",
-            *_struct(f"{name}_input", self.inputs),
-            *_struct(f"{name}_output", self.outputs),
-            *_state_struct(f"{name}_state", self.states),
+            *_signals(f"{name}_input", self.inputs),
+            *_signals(f"{name}_output", self.outputs),
+            *_struct(f"{name}_state", [_array(each) for each in self.states if all(each.sizes)], self._is_set("int is_on;")),
+            *self._parameters(),
             *comment("Set the state to rest; call it once before the first step."),
-            f"void {name}_init({name}_state *state);",
+            f"{init};",
             "",
             *comment("One sample: read the inputs, write the outputs, move the state on to the next sample."),
-            f"void {name}_step({name}_state *state, const {name}_input *in, {name}_output *out);",
+            f"{step};",
+            *(line for each in self.functions for line in ("", *comment(each.notes), f"{each.call};")),
             "",
             "#ifdef __cplusplus",
             "}",
@@ -85,63 +109,103 @@ class Program:
     @property
     def source(self) -> str:
         """Text of the source, `<name>.c`."""
-        name = self.name
+        init, step = self._calls
+        functions = [(step, self.code.body), *((each.call, each.body) for each in self.functions)]
         lines = [
             *(line for text in self.about for line in comment(text)),
-            f'#include "{name}.h"',
+            f'#include "{self.name}.h"',
             "",
-            "#include <math.h>",
+            "#include <math.h>" if self.settings is None else "#include <float.h>",
             "",
             *_NO_FAST_MATH,
-            *_head(self.code),
-            f"void {name}_init({name}_state *state)",
-            "{",
-            *indent(line for state in self.states for line in _initialise(state)),
-            "}",
+            *self._is_set(*_ROUNDED),
             "",
-            f"void {name}_step({name}_state *state, const {name}_input *in, {name}_output *out)",
-            "{",
-            *indent(self.code.body),
-            "}",
+            *(MULTIPLY if any("multiply(" in line for line in self.code.body) else ()),
+            *(_IS_FINITE if any("is_finite(" in line for line in self.code.body) else ()),
+            *self.code.tables,
+            "",
+            *_defined(init, [*(line for each in self.states for line in _initialise(each)), *self._first_settings()]),
+            *(line for call, body in functions for line in _defined(call, body)),
         ]
         return "\n".join(lines) + "\n"
+
+    @property
+    def _calls(self) -> tuple[str, str]:
+        """How the state is set to rest, and how a sample is taken."""
+        name, (changed, read) = self.name, ("", "")
+        if self.settings is not None:
+            changed, read = f", {name}_parameters *set", f" const {name}_parameters *set,"
+        step = f"void {name}_step({name}_state *state,{read} const {name}_input *in, {name}_output *out)"
+        return f"void {name}_init({name}_state *state{changed})", step
+
+    def _is_set(self, *lines: str) -> tuple[str, ...]:
+        """Lines that only a program with settings has."""
+        return () if self.settings is None else lines
+
+    def _parameters(self) -> list[str]:
+        if self.settings is None:
+            return []
+        arrays = [line for each in self.settings for line in (*comment(each.meaning), f"double {each.field}[{len(each.values)}];")]
+        notes = comment("What may be changed between two steps; enable is 0 or 1.")
+        return [f"typedef double {self.name}_real;", "", *notes, *_struct(f"{self.name}_parameters", arrays, ("int enable;",))]
+
+    def _first_settings(self) -> list[str]:
+        lines = list(self._is_set("state->is_on = 0;", "set->enable = 0;"))
+        for each in self.settings or ():
+            lines += table(f"first_{each.field}", each.values)
+            lines.append(f"for (int i = 0; i < {len(each.values)}; i++) set->{each.field}[i] = first_{each.field}[i];")
+        return lines
 
 
 _NO_FAST_MATH = (
     "#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)",
     "#error Compile without fast math: what is no finite number would not be seen, and sums would be in another order.",
     "#endif",
-    "",
+)
+_ROUNDED = (
+    "#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0",
+    "#error Compile so that numbers are rounded to their type, for example with -mfpmath=sse.",
+    "#endif",
+)
+_IS_FINITE = (
+    "static int is_finite(const double *values, int count)",
+    "{",
+    "    int i;",
+    "    for (i = 0; i < count && values[i] - values[i] == 0.0; i++) continue;",
+    "    return i == count;",
+    "}",
 )
 
 
-def _head(code: Code) -> list[str]:
-    """Tables, headed by the product of matrices where one is used."""
-    multiplied = [*MULTIPLY, ""] if any("multiply(" in line for line in code.body) else []
-    return [*multiplied, *code.tables, ""] if code.tables else multiplied
+def _defined(call: str, body: Iterable[str]) -> list[str]:
+    return [call, "{", *indent(body), "}", ""]
 
 
-def _struct(name: str, signals: Iterable[Signal]) -> list[str]:
-    lines = ["typedef struct {"]
+def _signals(name: str, signals: Iterable[Signal]) -> list[str]:
+    lines: list[str] = []
     for signal in signals:
         if signal.channels:
             listed = ", ".join(f"{channel.name} [{channel.unit}]" for channel in signal.channels)
-            lines += indent([*comment(f"{signal.meaning}: {listed}"), f"double {signal.field}[{len(signal.channels)}];"])
-    return [*lines, f"}} {name};", ""]
+            lines += [*comment(f"{signal.meaning}: {listed}"), f"double {signal.field}[{len(signal.channels)}];"]
+    return _struct(name, lines)
 
 
-def _state_struct(name: str, states: Iterable[State]) -> list[str]:
-    fields = [f"double {state.field}{''.join(f'[{size}]' for size in state.sizes)};" for state in states if all(state.sizes)]
-    return ["typedef struct {", *indent(fields), f"}} {name};", ""]
+def _struct(name: str, lines: Iterable[str], last: Iterable[str] = ()) -> list[str]:
+    return ["typedef struct {", *indent([*lines, *last]), f"}} {name};", ""]
+
+
+def _array(state: State) -> str:
+    return f"double {state.field}{''.join(f'[{size}]' for size in state.sizes)};"
 
 
 def _initialise(state: State) -> list[str]:
     """Every number of a group set, axis by axis."""
     if not all(state.sizes):
         return []
+    names = "ij"[: len(state.sizes)]
     loops = [
         f"{'    ' * depth}for (int {name} = 0; {name} < {size}; {name}++)"
-        for depth, (name, size) in enumerate(zip("ij", state.sizes, strict=False))
+        for depth, (name, size) in enumerate(zip(names, state.sizes, strict=True))
     ]
-    places = "".join(f"[{name}]" for name in "ij"[: len(state.sizes)])
+    places = "".join(f"[{name}]" for name in names)
     return [*loops, f"{'    ' * len(loops)}state->{state.field}{places} = {'0.0' if state.start is None else state.start + places};"]

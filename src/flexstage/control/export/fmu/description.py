@@ -18,7 +18,7 @@ _BASE = {"mass": "kg", "length": "m", "time": "s", "current": "A", "temperature"
 def guid(program: Program) -> str:
     """An identifier that follows from the program's text: the same program, the same identifier.
 
-    >>> from flexstage.control.export.code.code import Code
+    >>> from flexstage.control.export.code.product import Code
     >>> one, other = (guid(Program(name, (), 1.0, (), (), (), Code())) for name in ("one", "other"))
     >>> len(one), one == other
     (38, False)
@@ -30,7 +30,7 @@ def guid(program: Program) -> str:
 def description(program: Program, sources: Iterable[str]) -> bytes:
     """`modelDescription.xml` of a program: inputs and outputs are discrete real variables with units.
 
-    >>> from flexstage.control.export.code.code import Code
+    >>> from flexstage.control.export.code.product import Code
     >>> description(Program("none", (), 1.0, (), (), (), Code()), ["none.c"])[:38]
     b"<?xml version='1.0' encoding='utf-8'?>"
     """

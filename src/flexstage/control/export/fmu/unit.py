@@ -45,7 +45,7 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
 def fmu_sources(program: Program) -> dict[str, str]:
     """The sources of a unit by file name: the program, the functions of FMI around it, and the header that joins them.
 
-    >>> from flexstage.control.export.code.code import Code
+    >>> from flexstage.control.export.code.product import Code
     >>> sorted(fmu_sources(Program("none", (), 1.0, (), (), (), Code())))
     ['fmi2.c', 'model.h', 'none.c', 'none.h']
     """

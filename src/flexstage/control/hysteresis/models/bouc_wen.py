@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,9 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.models.protocol import Hysteresis, freeze_by_axis
 from flexstage.control.hysteresis.models.shape import Range, major_loop
+
+_TINY = 1e-300
+"""A rate in place of 0: the formulas have their limits there, to rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,74 +50,25 @@ class BoucWen(Hysteresis):
 
     def start(self, value: Array) -> Array:
         """The state (axes, 2) after a monotone travel from rest at 0 V to the volts (axes,)."""
-        kernel = BoucWenStepper(self, np.zeros((self.axes, 2)))
-        kernel(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)), np.empty(self.axes))
-        return kernel.state
+        return self.step(np.zeros((self.axes, 2)), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
-    def stepper(self, state: Array) -> BoucWenStepper:
-        """A kernel for simulations that starts from `state`."""
-        return BoucWenStepper(self, state)
-
-
-class BoucWenStepper:
-    """A Bouc-Wen model that runs: holds its state."""
-
-    __slots__ = ("_lagging", "_model", "_relax_ahead", "_relax_behind", "_volts", "_way_to_zero")
-
-    def __init__(self, model: BoucWen, state: Array) -> None:
-        self._model = model
-        self._volts, self._lagging = np.array(state, dtype=float).T
-        slow, fast = model.beta - model.gamma, model.beta + model.gamma
-        self._relax_behind, self._relax_ahead = _relaxation(slow, model.lag), _relaxation(fast, model.lag)
-        self._way_to_zero = _way_to_zero(-slow, model.lag)
-
-    @property
-    def state(self) -> Array:
-        """Volts and lag (axes, 2) now, a copy."""
-        return np.stack([self._volts, self._lagging], axis=1)
-
-    def __call__(self, value: Array, out: Array) -> Array:
-        """Take the volts (axes,) of the next sample, write the strokes into `out` (axes,) and return it."""
-        model = self._model
-        travel = value - self._volts
-        sign, way = np.sign(travel), np.abs(travel)
-        lagging = sign * self._lagging
+    def step(self, state: Array, value: Array) -> tuple[Array, Array]:
+        """The next volts and lag (axes, 2) and the strokes (axes,) for the next volts (axes,)."""
+        volts, lag = state.T
+        slow, fast = np.maximum(self.beta - self.gamma, _TINY), self.beta + self.gamma
+        sign, way = np.sign(value - volts), np.abs(value - volts)
+        lagging = sign * lag
         behind = np.minimum(lagging, 0.0)
-        before = np.minimum(way, -self._way_to_zero(behind))
+        before = np.minimum(way, np.log1p(-slow * behind / self.lag) / slow)
         ahead = np.where(before < way, np.maximum(lagging, 0.0), lagging)
-        first = self._relax_behind(behind, before)
-        passed = self._relax_ahead(ahead, way - before)
+        first, passed = self._relax(behind, before, slow), self._relax(ahead, way - before, fast)
         moved = np.where((lagging < 0.0) & (before >= way), first, passed)
-        self._lagging = np.where(way > 0.0, sign * moved, self._lagging)
-        self._volts = np.array(value, dtype=float)
-        np.multiply(model.gain, value, out=out)
-        np.subtract(out, self._lagging, out=out)
-        return np.add(model.offset, out, out=out)
+        lag = np.where(way > 0.0, sign * moved, lag)
+        return np.stack([value, lag], axis=1), self.offset + (self.gain * value - lag)
 
-
-def _relaxation(rate: Array, lag: Array) -> Callable[[Array, Array], Array]:
-    """Of g and e: g e^{-c e} + A (1 - e^{-c e})/c, and g + A e where c is 0."""
-    level = rate == 0.0
-    some, safe, fall = bool(np.any(level)), np.where(level, 1.0, rate), -rate
-
-    def relax(start: Array, way: Array) -> Array:
-        exponent = fall * way
-        gained = -np.expm1(exponent) / safe
-        return start * np.exp(exponent) + lag * (np.where(level, way, gained) if some else gained)
-
-    return relax
-
-
-def _way_to_zero(rate: Array, lag: Array) -> Callable[[Array], Array]:
-    """Of g: ln(1 + c g/A)/c, and g/A where c is 0: minus the way to g = 0 for c = -(beta - gamma)."""
-    level = rate == 0.0
-    some, safe = bool(np.any(level)), np.where(level, 1.0, rate)
-
-    def way(start: Array) -> Array:
-        curved = np.log1p(rate * start / lag) / safe
-        return np.where(level, start / lag, curved) if some else curved
-
-    return way
+    def _relax(self, start: Array, way: Array, rate: Array) -> Array:
+        """g e^{-c e} + A (1 - e^{-c e})/c of g, e and c."""
+        return start * np.exp(-rate * way) + self.lag * (-np.expm1(-rate * way) / rate)
 
 
 def _findings(model: BoucWen) -> Iterator[Finding]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, freeze
-
-Function = Callable[[Array, Array], Array]
-"""Takes an argument (..., axes) and a place of the same shape for the value, which it returns."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,12 +24,15 @@ class Envelope:
 
     knots: Array
     values: Array
+    changes: Array = field(init=False)
 
     def __post_init__(self) -> None:
         """Make both (axes, m) and read-only, and check them."""
         for name in ("knots", "values"):
             object.__setattr__(self, name, freeze(np.atleast_2d(np.asarray(getattr(self, name), dtype=float))))
         require(_findings(self))
+        slopes = self.slopes
+        object.__setattr__(self, "changes", np.concatenate([slopes[:, :1], np.diff(slopes)], axis=1))
 
     @property
     def axes(self) -> int:
@@ -44,50 +44,14 @@ class Envelope:
         """Slopes (axes, m-1) of the pieces."""
         return np.diff(self.values) / np.diff(self.knots)
 
-    @property
-    def is_straight(self) -> bool:
-        """Whether it has no bend on any axis."""
-        return self.knots.shape[1] == 2
-
     def at(self, arguments: Array) -> Array:
         """Values (..., axes) at arguments (..., axes)."""
-        arguments = np.asarray(arguments, dtype=float)
-        return self.function(arguments.shape)(arguments, np.empty(arguments.shape))
-
-    def function(self, shape: tuple[int, ...]) -> Function:
-        """The function with buffers of its own, for arguments of one shape (..., axes)."""
-        first, slope, start = self.knots[:, 0], self.slopes[:, 0], self.values[:, 0]
-        if not self.is_straight:
-            return self._piecewise(shape)
-        if not np.any(first) and not np.any(start) and np.all(slope == 1.0):
-            return _copy
-
-        def straight(argument: Array, out: Array) -> Array:
-            np.subtract(argument, first, out=out)
-            np.multiply(slope, out, out=out)
-            return np.add(start, out, out=out)
-
-        return straight
-
-    def _piecewise(self, shape: tuple[int, ...]) -> Function:
-        slopes = self.slopes
-        knots, start = self.knots[:, :-1], self.values[:, 0]
-        floors = np.where(np.arange(slopes.shape[1]) == 0, -np.inf, 0.0)
-        changes = np.concatenate([slopes[:, :1], np.diff(slopes)], axis=1)
-        beyond = np.empty((*shape, slopes.shape[1]))
-
-        def bent(argument: Array, out: Array) -> Array:
-            np.subtract(argument[..., None], knots, out=beyond)
-            np.maximum(beyond, floors, out=beyond)
-            np.vecdot(changes, beyond, out=out)
-            return np.add(start, out, out=out)
-
-        return bent
-
-
-def _copy(argument: Array, out: Array) -> Array:
-    np.copyto(out, argument)
-    return out
+        if self is IDENTITY:
+            return np.asarray(arguments, dtype=float)
+        beyond = np.asarray(arguments, dtype=float)[..., None] - self.knots[:, :-1]
+        if beyond.shape[-1] > 1:
+            np.maximum(beyond[..., 1:], 0.0, out=beyond[..., 1:])
+        return self.values[:, 0] + np.vecdot(self.changes, beyond)
 
 
 def _findings(envelope: Envelope) -> Iterator[Finding]:

@@ -57,37 +57,11 @@ class PrandtlIshlinskii(Hysteresis):
         effective = self.before.at(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[:, None]
         return np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, 0.0))
 
-    def stepper(self, state: Array) -> PlayStepper:
-        """A kernel for simulations that starts from `state`: about ten calls of numpy a sample, whatever the number of axes."""
-        return PlayStepper(self, state)
-
-
-class PlayStepper:
-    """A Prandtl-Ishlinskii model that runs: holds its plays and buffers."""
-
-    __slots__ = ("_after", "_before", "_bound", "_effective", "_plays", "_sum", "_thresholds", "_weights")
-
-    def __init__(self, model: PrandtlIshlinskii, state: Array) -> None:
-        self._before, self._after = (each.function((model.axes,)) for each in (model.before, model.after))
-        self._thresholds, self._weights = model.thresholds, model.weights
-        self._plays = np.array(np.broadcast_to(state, model.thresholds.shape), dtype=float)
-        self._bound = np.empty_like(self._plays)
-        self._effective, self._sum = np.empty(model.axes), np.empty(model.axes)
-
-    @property
-    def state(self) -> Array:
-        """Outputs of the plays (axes, n) now, a copy."""
-        return self._plays.copy()
-
-    def __call__(self, value: Array, out: Array) -> Array:
-        """Take the input (axes,) of the next sample, write the output into `out` (axes,) and return it."""
-        plays, bound = self._plays, self._bound
-        effective = self._before(value, self._effective)[:, None]
-        np.add(effective, self._thresholds, out=bound)
-        np.minimum(bound, plays, out=plays)
-        np.subtract(effective, self._thresholds, out=bound)
-        np.maximum(bound, plays, out=plays)
-        return self._after(np.vecdot(self._weights, plays, out=self._sum), out)
+    def step(self, state: Array, value: Array) -> tuple[Array, Array]:
+        """The next outputs of the plays (axes, n) and the output (axes,) for the next input (axes,)."""
+        effective = self.before.at(value)[:, None]
+        plays = np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, state))
+        return plays, self.after.at(np.vecdot(self.weights, plays))
 
 
 def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""What every hysteresis offers to a loop: a start, a step, a run, and a kernel that steps in place."""
+"""What every hysteresis offers to a loop: a start, a step and a run."""
 
 from __future__ import annotations
 
@@ -9,19 +9,6 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, freeze
-
-
-class Stepper(Protocol):
-    """A hysteresis that runs: it holds its state and buffers, and each call takes it one sample on."""
-
-    @property
-    def state(self) -> Array:
-        """The state now, a copy: what `Hysteresis.step` takes."""
-        ...
-
-    def __call__(self, value: Array, out: Array) -> Array:
-        """Take the input `value` (axes,) of the next sample, write the output into `out` (axes,) and return it."""
-        ...
 
 
 class Hysteresis(Protocol):
@@ -47,9 +34,7 @@ class Hysteresis(Protocol):
         >>> (1e6 * proportional([2e-7]).step(np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
         [20.0]
         """
-        kernel = self.stepper(state)
-        out = kernel(np.asarray(value, dtype=float), np.empty(self.axes))
-        return kernel.state, out
+        ...
 
     def run(self, values: Array, state: Array | None = None) -> Array:
         """Outputs for inputs (k, axes), or (k,) of a single actuator, from `state`, or else from rest.
@@ -67,15 +52,9 @@ class Hysteresis(Protocol):
             raise refuse("hysteresis", "an input is not finite", "Mend the inputs")
         rows = values.reshape(len(values), self.axes)
         found = np.empty_like(rows)
-        if len(rows):
-            kernel = self.stepper(self.start(rows[0]) if state is None else state)
-            for value, out in zip(rows, found, strict=True):
-                kernel(value, out)
+        for place, value in enumerate(rows):
+            state, found[place] = self.step(self.start(value) if state is None else state, value)
         return found.reshape(values.shape)
-
-    def stepper(self, state: Array) -> Stepper:
-        """A kernel for simulations that starts from `state`."""
-        ...
 
 
 def freeze_by_axis(model: Any) -> None:

@@ -17,8 +17,8 @@ from flexstage.base.units.dimension import dimension_of
 from flexstage.experiment.formats.arrays import Contents, HeldArray, complex_of, read_arrays
 from flexstage.experiment.formats.table.layout import Layout, read_layout
 from flexstage.experiment.formats.table.values import TableSamples, index_lines
-from flexstage.experiment.records.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
-from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, assign, matches, select_names
+from flexstage.experiment.records.clock import TIME_SCALES, Clock, clocked_record, determine_clock
+from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, matches
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
@@ -30,7 +30,6 @@ SAYING = {"name": "name: ", "roles": "roles: ", "window": "window: ", "inputs": 
 _PART = re.compile(r"(?:(?P<name>.+?)[ _])?(?P<part>re|im|coherence|mag|magnitude|amplitude|gain|phase)", re.IGNORECASE)
 _MAGNITUDES = ("mag", "amplitude", "gain")
 _RECTANGULAR, _POLAR = ("re", "im"), ("magnitude", "phase")
-_BLOCK = 65_536
 
 
 def is_text(_start: bytes, _suffix: str) -> bool:
@@ -122,10 +121,8 @@ def _record(path: Path, layout: Layout, samples: TableSamples, options: Options)
     channels = [Channel(layout.names[number], layout.units[number], role) for number, role in zip(columns, roles, strict=True)]
     if not channels:
         raise refuse(str(path), "it has a column of times and no other", "Give at least one channel")
-    whole = assign(channels, options, str(path))
-    record = Record(whole, clock.rate, replace(samples, columns=columns), clock.start, name=_comment(layout, "name"), source=str(path))
-    record = record.select(select_names(record.names, options)) if options.only else record
-    return longest_stretch(record, clock)
+    chosen = replace(samples, columns=columns)
+    return clocked_record(channels, chosen, clock, options, name=_comment(layout, "name"), where=str(path))
 
 
 def _roles(layout: Layout, count: int) -> list[Role]:
@@ -146,15 +143,7 @@ def _clock(path: Path, layout: Layout, samples: TableSamples, time: int | None, 
         raise refuse(f"{path}: {layout.names[time]}", f'its unit is "{layout.units[time]}", where a time is expected', "Write s, ms or us")
     scale = TIME_SCALES.get(layout.units[time], 1.0)
     times = replace(samples, columns=(time,))
-    told = StatedClock(stated, allow_gaps=FaultTolerance.GAPS in options.accept_faults)
-    return determine_clock(
-        _times(times, scale), lambda number: float(times.read(number, number + 1)[0, 0]) * scale, told, f"{path}: {layout.names[time]}"
-    )
-
-
-def _times(samples: TableSamples, scale: float) -> Iterator[Array]:
-    for start in range(0, samples.length, _BLOCK):
-        yield samples.read(start, start + _BLOCK)[:, 0] * scale
+    return determine_clock(times, options, f"{path}: {layout.names[time]}", scale=scale, stated=stated)
 
 
 def _responses(

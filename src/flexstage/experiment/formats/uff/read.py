@@ -6,19 +6,19 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.formats.arrays import SideBySide, complex_of
+from flexstage.experiment.formats.arrays import complex_of, side_by_side
 from flexstage.experiment.formats.uff.function import COHERENCE, KINDS
 from flexstage.experiment.formats.uff.scan import DataSet, scan
-from flexstage.experiment.records.clock import Clock, StatedClock, determine_clock, longest_stretch
+from flexstage.experiment.records.clock import Clock, determine_clock, longest_stretch
 from flexstage.experiment.records.options import FaultTolerance, Kind, Options, assign, matches, number_names, select_names
-from flexstage.experiment.records.record import Channel, Record, Responses, Role, Samples
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, changed_samples
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")
@@ -26,24 +26,6 @@ OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FL
 OWN_RESPONSE = re.compile(rf"flexstage response; first (?P<first>{_FLOAT}) Hz; step (?P<step>{_FLOAT}) Hz; averages (?P<averages>\d+)")
 COUNTED = re.compile(r"(?P<text>.*?)(?:; )?function (?P<number>\d+) of (?P<count>\d+)")
 """The fourth line of text of functions written here: how many there are, which the format does not say."""
-_BLOCK = 262_144
-
-
-@dataclass(frozen=True, eq=False)
-class Column:
-    """One column of other samples."""
-
-    samples: Samples
-    number: int
-
-    @property
-    def length(self) -> int:
-        """Number of samples."""
-        return self.samples.length
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded, (n, 1)."""
-        return self.samples.read(start, stop)[:, [self.number]]
 
 
 def is_uff(start: bytes, _suffix: str) -> bool:
@@ -107,15 +89,13 @@ def _name(found: DataSet) -> str:
 
 def _record(path: Path, histories: list[DataSet], options: Options) -> Record:
     names = _history_names(histories)
-    pairs = zip(names, histories, strict=True)
+    pairs = list(zip(names, histories, strict=True))
     whole = assign((Channel(name, each.function.ordinate.unit, _role(each)) for name, each in pairs), options, str(path))
-    kept = set(select_names(names, options))
-    chosen = [(name, each) for name, each in zip(names, histories, strict=True) if name in kept]
+    chosen = [(name, each) for name, each in pairs if name in select_names(names, options)]
     clock = _common_clock(path, chosen, options)
-    samples = SideBySide(tuple(each.values if each.function.is_even else Column(each.values, 1) for _, each in chosen))
-    channels = tuple(channel for channel in whole if channel.name in kept)
-    record = Record(channels, clock.rate, samples, clock.start, name=_title(chosen[0][1]), source=str(path))
-    return longest_stretch(record, clock)
+    samples = side_by_side([changed_samples(each.values, lambda block: block[:, -1:]) for _, each in chosen])
+    channels = tuple(channel for channel in whole if channel.name in dict(chosen))
+    return longest_stretch(Record(channels, clock.rate, samples, clock.start, name=_title(chosen[0][1]), source=str(path)), clock)
 
 
 def _history_names(histories: list[DataSet]) -> tuple[str, ...]:
@@ -172,10 +152,7 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
         return Clock(function.rate, function.first, whole)
     if options.rate:
         return Clock(options.rate, 0.0, ((0, found.values.length),))
-    values, length = found.values, found.values.length
-    blocks = (values.read(start, min(start + _BLOCK, length))[:, 0] for start in range(0, length, _BLOCK))
-    told = StatedClock(allow_gaps=FaultTolerance.GAPS in options.accept_faults)
-    return determine_clock(blocks, lambda number: float(values.read(number, number + 1)[0, 0]), told, f"{path}: {name}")
+    return determine_clock(found.values, options, f"{path}: {name}")
 
 
 def refines(text: str, field: float, *, inverse: bool = False) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.experiment.formats.uff.function import HEAD_LINES, Function, parse_head
-from flexstage.experiment.formats.uff.values import BinaryValues, Layout, PrintedValues
+from flexstage.experiment.formats.uff.values import Layout, binary_values
 from flexstage.experiment.records.record import InMemory, Samples
 
 _END = re.compile(rb"[ ]*\r?\n?[ ]{4}-1[ ]*(\r?\n|$)")
@@ -104,7 +104,7 @@ def _read(path: Path, stream: BinaryIO, line: int, opening: bytes) -> DataSet:
         raise
     if opening[6:7].lower() == b"b":
         return _read_binary(path, stream, line, (function, opening))
-    return _read_printed(path, stream, line, function)
+    return _read_printed(stream, line, function)
 
 
 def _read_binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, bytes]) -> DataSet:
@@ -123,7 +123,7 @@ def _read_binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, 
     if layout is not None:
         stream.seek(start + layout.size * function.count)
         _skip(stream)
-        return DataSet(function, BinaryValues(path, start, function.count, layout, big=order == 2), line)
+        return DataSet(function, binary_values(path, start, function.count, layout, big=order == 2), line)
     return _read_part(path, stream, line, function, (start, layouts[0], order == 2))
 
 
@@ -148,7 +148,7 @@ def _read_part(path: Path, stream: BinaryIO, line: int, function: Function, data
     if count == function.count:
         raise ValueError(f"it has {problem}; the file was changed as text")
     _skip(stream)
-    return DataSet(function, BinaryValues(path, start, count, layout, big=big), line, f"it breaks off: it has {problem}")
+    return DataSet(function, binary_values(path, start, count, layout, big=big), line, f"it breaks off: it has {problem}")
 
 
 def _next_mark(stream: BinaryIO, start: int) -> int:
@@ -164,17 +164,8 @@ def _next_mark(stream: BinaryIO, start: int) -> int:
     return position
 
 
-def _read_printed(path: Path, stream: BinaryIO, line: int, function: Function) -> DataSet:
-    start, layout = stream.tell(), Layout.of(function)
-    first = stream.readline()
-    length = max(len(first), sum(layout.widths) + 1)  # the only line may be short
-    values = PrintedValues(path, start, function.count, layout, length)
-    if first and values.fits(first) and _closes(stream, values.end):
-        stream.seek(values.end)
-        _skip(stream)
-        return DataSet(function, values, line)
-    stream.seek(start)
-    numbers, problem = _words(stream, layout, function)
+def _read_printed(stream: BinaryIO, line: int, function: Function) -> DataSet:
+    numbers, problem = _words(stream, Layout.of(function), function)
     return DataSet(function, InMemory(numbers), line, problem)
 
 

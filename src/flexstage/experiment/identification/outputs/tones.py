@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.records.record import Record, Samples
+from flexstage.experiment.records.record import ComputedSamples, Record, Samples
 from flexstage.experiment.spectral.cross_spectra import Tell
 from flexstage.experiment.spectral.lines import block_count
 
@@ -49,37 +49,26 @@ def steady_tones(tones: Iterable[Tone]) -> tuple[Tone, ...]:
     return tuple(tone for tone in tones if not tone.fades)
 
 
-@dataclass(frozen=True, eq=False)
-class Quieted:
-    """Other samples less tones in the channels of the numbers `columns`, sampled at `rate`."""
+def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, ...], rate: float) -> Samples:
+    """Other samples less tones in the channels of the numbers `columns`, sampled at `rate`.
 
-    samples: Samples
-    tones: tuple[Tone, ...]
-    columns: tuple[int, ...]
-    rate: float
+    >>> hum = Tone(0.25, np.array([0.5]), 0, 4)
+    >>> quiet_samples(InMemory(np.array([[1.0], [0.0], [-1.0], [0.0]])), (hum,), (0,), 1.0).read(0, 2).round(12).ravel().tolist()
+    [0.0, 0.0]
+    """
 
-    @property
-    def length(self) -> int:
-        """Number of samples of each channel."""
-        return self.samples.length
-
-    def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded, without the tones.
-
-        >>> from flexstage.experiment.records.record import InMemory
-        >>> hum = Tone(0.25, np.array([0.5]), 0, 4)
-        >>> Quieted(InMemory(np.array([[1.0], [0.0], [-1.0], [0.0]])), (hum,), (0,), 1.0).read(0, 2).round(12).ravel().tolist()
-        [0.0, -0.0]
-        """
-        found = np.array(self.samples.read(start, stop), dtype=float)
-        for tone in self.tones:
+    def read(start: int, stop: int) -> Array:
+        found = np.array(samples.read(start, stop), dtype=float)
+        for tone in tones:
             low, high = max(start, tone.start), min(start + len(found), tone.stop)
             if low < high:
-                turned = np.exp(2j * np.pi * tone.frequency / self.rate * (np.arange(low, high) - tone.start))
-                for column, amplitude in zip(self.columns, tone.amplitudes, strict=True):
+                turned = np.exp(2j * np.pi * tone.frequency / rate * (np.arange(low, high) - tone.start))
+                for column, amplitude in zip(columns, tone.amplitudes, strict=True):
                     if amplitude:
                         found[low - start : high - start, column] -= 2.0 * np.real(amplitude * turned)
         return found
+
+    return ComputedSamples(samples.length, read)
 
 
 def remove_tones(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Tone, ...]]:
@@ -92,7 +81,6 @@ def remove_tones(record: Record, tell: Tell | None = None) -> tuple[Record, tupl
     a tone too: no record tells them apart.
 
     >>> from flexstage.experiment.example import one_mode_record
-    >>> from flexstage.experiment.records.record import InMemory
     >>> made = one_mode_record(seconds=16.0)
     >>> hum = np.sin(2.0 * np.pi * 15.03 * np.arange(made.length) / made.rate)
     >>> noisy = replace(made, samples=InMemory(made.values + np.array([0.0, 20.0]) * hum[:, None]))
@@ -110,14 +98,14 @@ def remove_tones(record: Record, tell: Tell | None = None) -> tuple[Record, tupl
             tell((start + size) / (parts * size))
     if not steady_tones(found):
         return record, tuple(found)
-    return replace(record, samples=Quieted(record.samples, steady_tones(found), outputs, record.rate)), tuple(found)
+    return replace(record, samples=quiet_samples(record.samples, steady_tones(found), outputs, record.rate)), tuple(found)
 
 
 def _tones_of_block(record: Record, inputs: tuple[int, ...], outputs: tuple[int, ...], start: int, stop: int) -> list[Tone]:
     found: list[Tone] = []
     line = record.rate / (stop - start)
     for _ in range(_ROUNDS):
-        block = Quieted(record.samples, steady_tones(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]
+        block = quiet_samples(record.samples, steady_tones(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]
         lines = np.fft.rfft(block - np.mean(block, axis=0), axis=0) / np.sqrt(stop - start)
         more = [
             Tone(seen.place * line, seen.amplitudes / np.sqrt(stop - start), start, stop, seen.chance, seen.fades)

@@ -1,9 +1,8 @@
-"""The linear parts of a machine as two matrices: one from readings to commands, one from a sample to the next."""
+"""The matrices of a machine: plant and controller by what goes in and out."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -87,82 +86,3 @@ def _columns(system: System, names: tuple[str, ...]) -> tuple[Array, Array]:
 
 def _rows(system: System, names: tuple[str, ...]) -> list[int]:
     return [system.output_names.index(name) for name in names]
-
-
-@dataclass(frozen=True, eq=False)
-class Row:
-    """Where what stands in the row of numbers of a sample: first what the step before computed, then what this one adds."""
-
-    reading: slice
-    base: slice
-    plant: slice
-    controller: slice
-    rounded: slice
-    applied: slice
-    stroke: slice
-    command: slice
-    asked: slice
-    given: slice
-    width: int
-
-    @property
-    def next_values(self) -> slice:
-        """What the step before computes."""
-        return slice(0, self.controller.stop)
-
-    @property
-    def bounded_states(self) -> slice:
-        """What of it is bounded in a stable loop: all but readings, which may be lost."""
-        return slice(self.base.start, self.controller.stop)
-
-    @property
-    def carried_over(self) -> slice:
-        """What the next step is computed from."""
-        return slice(self.plant.start, self.stroke.stop)
-
-
-@dataclass(frozen=True, eq=False)
-class Fused:
-    """`step` takes a row's `carried_over` to the next row's `next_values`, `proportional` rounded readings to what they add to commands.
-
-    Readings are counted in `scale` (g,), the gauges' resolution (1 m where they have none).
-    """
-
-    row: Row
-    scale: Array
-    step: Array
-    proportional: Array
-
-
-def fuse(given: Machine, linear: Parts) -> Fused:
-    """A machine's linear parts, multiplied out: what is seen next is computed with the states.
-
-    y+ = C x+ and command+ = C z+ take part as further rows, so that one product a sample does for all.
-
-    >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.simulation.machine import machine
-    >>> example = integral_loop()
-    >>> known = machine(example.plant, example.controller)
-    >>> found = fuse(known, parts(known))
-    >>> found.step.shape == (found.row.next_values.stop, found.row.carried_over.stop - found.row.carried_over.start)
-    True
-    """
-    row = _row(given, linear)
-    scale = np.where(given.resolution > 0.0, given.resolution, 1.0)
-    seen = given.pose * scale
-    matrix = np.zeros((row.next_values.stop, row.width))
-    matrix[row.plant, row.plant] = linear.A
-    matrix[row.plant, row.stroke] = linear.stroke
-    matrix[row.controller, row.controller] = linear.controller
-    matrix[row.controller, row.rounded] = linear.from_pose @ seen
-    matrix[row.controller, row.applied] = linear.from_applied
-    matrix[row.reading] = linear.reading @ matrix[row.plant] / scale[:, None]
-    matrix[row.base] = linear.command @ matrix[row.controller]
-    return Fused(row, scale, np.ascontiguousarray(matrix[:, row.carried_over]), np.ascontiguousarray(linear.command_q @ seen))
-
-
-def _row(given: Machine, linear: Parts) -> Row:
-    gauges, actuators = len(given.gauges), len(given.actuators)
-    sizes = (gauges, actuators, len(linear.A), len(linear.controller), gauges, actuators, *(actuators,) * 4)
-    ends = np.cumsum((0, *sizes)).tolist()
-    return Row(*(slice(start, stop) for start, stop in pairwise(ends)), width=ends[-1])

@@ -65,13 +65,13 @@ class Preisach(Hysteresis):
 
     def start(self, value: Array) -> Array:
         """The state after the volts rose from rest, all relays off, to (axes,): the extremes that are remembered."""
-        kernel = PreisachStepper(self, _memory(self.low, self.low, _SLOTS))
-        kernel(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)), np.empty(self.axes))
-        return kernel.state
+        return self.step(_memory(self.low, self.low, _SLOTS), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
-    def stepper(self, state: Array) -> PreisachStepper:
-        """A kernel for simulations that starts from `state`."""
-        return PreisachStepper(self, state)
+    def step(self, state: Array, value: Array) -> tuple[Array, Array]:
+        """The next state and the strokes (axes,) for the next volts (axes,)."""
+        kernel = PreisachStepper(self, state)
+        out = kernel(value, np.empty(self.axes))
+        return kernel.state, out
 
 
 def _memory(peaks: Array, valleys: Array, slots: int) -> Array:
