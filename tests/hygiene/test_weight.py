@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 28_800,
+    "base": 27_600,
     "spatial": 3_900,
-    "parts": 46_000,
+    "parts": 37_700,
     "beams": 25_500,
-    "mechanism": 59_800,
-    "cases": 13_700,
-    "models": 113_900,
+    "mechanism": 57_200,
+    "cases": 5_300,
+    "models": 90_900,
     "analysis": 70_200,
-    "show": 74_400,
-    "solid": 79_800,
-    "experiment": 102_700,
-    "control": 172_600,
-    "studies": 54_900,
-    "apps": 37_900,
+    "show": 64_900,
+    "solid": 79_200,
+    "experiment": 101_000,
+    "control": 158_800,
+    "studies": 54_700,
+    "apps": 36_200,
     ".": 400,
-    "all": 883_900,
+    "all": 812_700,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

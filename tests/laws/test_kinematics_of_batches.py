@@ -54,7 +54,7 @@ def scaled(case: str, address: str, factors: Sequence[float] | float) -> Mechani
 MOVED = (
     ("tip-tilt", "bodies.platform.solids.holder.diameter"),
     ("double-triangle", "units.vertical.links.upper.at.z"),
-    ("xy-stage", "units.pushed.links.left.at.y"),
+    ("xy-stage", "units.following.links.left.at.y"),
     ("parallelogram", "links.left.at.x"),
 )
 

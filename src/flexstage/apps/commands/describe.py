@@ -13,6 +13,7 @@ from flexstage.analysis.caveats import caveats, model_findings
 from flexstage.apps.words import File
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.storage.document import as_text
+from flexstage.base.text import printable
 from flexstage.base.version import __version__
 from flexstage.cases.registry import shipped_case
 from flexstage.control.hysteresis.stack import hysteresis_schema
@@ -62,7 +63,7 @@ def new(
     require_writable([(str(target), target)])
     if target.exists() and not force:
         require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
-    text = start.text(stated, _heading(case, start.summary, str(target), stated))
+    text = start.text(stated, _heading(case, start.summary, printable(str(target)), stated))
     write(target, f"#:schema ./{SCHEMA_FILE}\n{text}", str(target))
     announce(f"Wrote {target} ({case}: {start.summary}). Next: flexstage analyse {target}")
 

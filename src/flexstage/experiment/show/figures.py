@@ -52,6 +52,8 @@ def response_matrix_figure(found: Identified) -> Any:
                 _phase(pair[1], lines, values[:, row, column], fine=fine, fit=own, bins=bins)
             _same_scale(grid[2 * row], values[:, row, : len(columns)])
         _matrix_labels(grid, rows, columns, band)
+        for axes in grid.flat:
+            axes.minorticks_off()
     return figure
 
 
@@ -98,7 +100,8 @@ def _magnitude(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array 
 
 def _phase(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array | None, bins: int) -> None:
     step = max(1, len(lines) // bins)
-    axes.plot(lines[::step], np.rad2deg(np.angle(data[::step])), ".", color=_DATA, markersize=2.0, markeredgewidth=0.0)
+    marks = np.rad2deg(np.angle(data[::step]))[:, None] + np.array([-4.0, 4.0, np.nan])  # one path: markers are an element each
+    axes.plot(np.repeat(lines[::step], 3), marks.ravel(), color=_DATA, linewidth=1.5)
     if fit is not None:
         angle = np.rad2deg(np.angle(fit))
         jumps = np.flatnonzero(np.abs(np.diff(angle)) > 0.5 * _PERIOD) + 1

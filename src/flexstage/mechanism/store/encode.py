@@ -21,8 +21,8 @@ _LAST = ("overrides", "requirements", "sources", TAGS)
 def tree_of(mechanism: Mechanism) -> dict[str, Any]:
     """Return the tree of a description's file.
 
-    Raises `DesignError` for what a file cannot hold: a batch, a complex number, a value that its formula does not give. Values equal to their
-    defaults are left out, but for gravity.
+    Values equal to their defaults are left out, but for gravity. Raises `DesignError` for what a file cannot hold: a batch, a complex
+    number, a value that its formula does not give.
 
     >>> tree_of(Mechanism("empty"))
     {'format': 'flexstage 1', 'name': 'empty', 'gravity': ['0 m/s^2', '0 m/s^2', '-9.80665 m/s^2']}

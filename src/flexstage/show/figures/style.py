@@ -55,6 +55,7 @@ _RC: dict[Any, Any] = {
     "savefig.facecolor": "none",
     "svg.fonttype": "none",
     "path.simplify": True,
+    "path.simplify_threshold": 0.4,  # of a point: curves of thousands of points
     "axes.unicode_minus": True,
     "image.composite_image": False,
     "axes.formatter.use_mathtext": False,

@@ -36,7 +36,7 @@ _LABEL_COLOURS = {Kind.DRIVE: DRIVE, Kind.GAUGE: GAUGE}
 _EDGE = "#323e4b"
 _LIGHT = np.array([-0.35, 0.55, 0.76])
 """Towards a light above the viewer's left shoulder: right, up, towards the viewer."""
-_DOTS = 200.0
+_DOTS = 160.0
 """Pixels of an image in an inch: twice those of a screen."""
 
 
@@ -117,7 +117,7 @@ def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]
 
     >>> axes = fit(canvas(1.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0]))
     >>> pixels(axes, np.array([[1e-3, 0.0, 0.0]]), view(Side.TOP))
-    (array([[200., 200.,   0.]]), (200, 200))
+    (array([[160., 160.,   0.]]), (160, 160))
     """
     corner, scale = np.array([axes.viewLim.x0, axes.viewLim.y1, 0.0]), _DOTS / 72.0
     width, height = np.ceil(scale * _paper(axes)).astype(int).tolist()
