@@ -118,6 +118,7 @@ def with_feedforward(control: System, gains: Array | None, coordinates: Coordina
     >>> from flexstage.control.systems.system import static
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.linear.model import Channel
     >>> found = static(np.zeros((1, 1)), (Channel("error.x", "m"),), (Channel("command.B", "m"),))
     >>> with_feedforward(found, np.array([[1.03]]), coordinates(ideal(parallelogram()))).D.tolist()
     [[0.0, 1.03]]
