@@ -58,9 +58,8 @@ class Decentralised(CheckedFields):
         chains = loop_systems(self, step)
         loops, coordinates, count = self.loops, self.loops.coordinates, len(chains)
         A = side_by_side([each.A for each in chains])
-        size = sum(len(each.A) for each in chains)
-        entries = [_block_columns([each.B[:, [column]] for each in chains], size) for column in range(3)]
-        exit_ = _block_columns([each.C.T for each in chains], size).T
+        entries = [side_by_side([each.B[:, [column]] for each in chains]) for column in range(3)]
+        exit_ = side_by_side([each.C for each in chains])
         direct = [np.diag([each.D[0, column] for each in chains]) for column in range(3)]
         # what was applied, seen by the loops; the loops' commands are less than the actuators' where these are redundant
         seen = (loops.sense, loops.sense, np.linalg.pinv(loops.drive))
@@ -125,6 +124,7 @@ def with_feedforward(control: System, gains: Array | None, coordinates: Coordina
     >>> from flexstage.control.systems.system import static
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.linear.model import Channel
     >>> found = static(np.zeros((1, 1)), (Channel("error.x", "m"),), (Channel("command.B", "m"),))
     >>> with_feedforward(found, np.array([[1.03]]), coordinates(ideal(parallelogram()))).D.tolist()
     [[0.0, 1.03]]
@@ -147,15 +147,6 @@ def with_feedforward(control: System, gains: Array | None, coordinates: Coordina
 def _drop_unused_poses(control: System, poses: list[str]) -> System:
     names = [name for name in control.input_names if not name.startswith("pose.") or name in poses]
     return select(control, names, control.output_names)
-
-
-def _block_columns(columns: list[Array], size: int) -> Array:
-    """Columns of the single loops, each in its own rows: (size, count)."""
-    found, row = np.zeros((size, len(columns))), 0
-    for number, column in enumerate(columns):
-        found[row : row + len(column), number] = column[:, 0]
-        row += len(column)
-    return found
 
 
 def _findings(control: Decentralised) -> Iterator[Finding]:

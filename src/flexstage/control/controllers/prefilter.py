@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -14,7 +14,7 @@ from flexstage.base.record import Heading
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.sampling import bilinear
-from flexstage.control.systems.system import System, connect
+from flexstage.control.systems.system import System, connect, side_by_side, static
 from flexstage.models.linear.model import Channel
 
 _PORTS = (Channel("reference", "m"),), (Channel("shaped", "m"),)
@@ -93,17 +93,8 @@ def _inputs(control: System, coordinates: Coordinates) -> tuple[Channel, ...]:
 
 
 def _shaped(filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates, step: float | None) -> System:
-    """From `asked.<c>` to `shaped.<c>`."""
-    back = np.linalg.pinv(sense)
-    parts = [each.system(step) if each is not None else None for each in filters]
-    size = sum(len(each.A) for each in parts if each is not None)
-    A, B, C, D = np.zeros((size, size)), np.zeros((size, len(parts))), np.zeros((len(parts), size)), np.eye(len(parts))
-    row = 0
-    for loop, each in enumerate(parts):
-        if each is not None:
-            own = slice(row, row + len(each.A))
-            A[own, own], B[own, [loop]], C[loop, own], D[loop, loop] = each.A, each.B, each.C[0], each.D[0, 0]
-            row = own.stop
-    return replace(
-        System(A, B @ sense, back @ C, back @ D @ sense, coordinates.motions("asked."), coordinates.motions("shaped.")), step=step
-    )
+    """References of the coordinates, shaped loop by loop."""
+    parts = [static(np.eye(1), *_PORTS, step) if each is None else each.system(step) for each in filters]
+    A, B, C, D = (side_by_side([getattr(each, name) for each in parts]) for name in "ABCD")
+    back, ends = np.linalg.pinv(sense), (coordinates.motions("asked."), coordinates.motions("shaped."))
+    return System(A, B @ sense, back @ C, back @ D @ sense, *ends, step)

@@ -105,7 +105,7 @@ def most_damping(frequency: float, zero: float) -> float:
 def damping_of_pair(law: ForceFeedback, frequency: float, zero: float) -> complex:
     """The pole [1/s] that an undamped mode comes to: the root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0 that goes on from j w as g grows.
 
-    >>> pole = damping_of_pair(ForceFeedback(best_gain(1.2, 1.0), 1e-6, order=1), 1.2, 1.0)
+    >>> pole = damping_of_pair(ForceFeedback(2.4 * np.pi * 1.2**0.5, 1e-6, order=1), 1.2, 1.0)
     >>> round(-pole.real / abs(pole), 5)
     0.1
     """

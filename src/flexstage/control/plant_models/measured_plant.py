@@ -53,14 +53,14 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
     require(_channel_findings(given.coordinates, found))
     pairs = pair_modes(given, model, found)
     require(_stage_findings(given, found, pairs))
-    rows, columns, factors = _places(given.coordinates, found)
+    rows, columns, outer, inner = channel_places(given.coordinates, found)
     lags = 2.0 * np.pi * np.array([given.hardware.sensors[name].bandwidth for name in given.gauges])
     ahead = _before_lags(found, rows, lags)
     late = common_delay(ahead)
     delay = 0.0 if late is None else late.value
     participation = ahead.participation * np.exp(ahead.poles * delay)[:, None]
     direct = _static_term(ahead, participation, delay)[np.ix_(rows, columns)]
-    sizes = factors[0][:, None], factors[1]
+    sizes = outer[:, None], 1.0 / inner
     moved = _modal_system(
         found.poles, ahead.shapes[rows] * sizes[0], participation[:, columns] * sizes[1], direct * sizes[0] * sizes[1], given
     )
@@ -154,11 +154,11 @@ def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]
                 )
 
 
-def _places(loop: Coordinates, found: Identified) -> tuple[list[int], list[int], tuple[Array, Array]]:
-    """Rows and columns of the loop's gauges and actuators in what was found, and the factors that make its numbers SI."""
+def channel_places(loop: Coordinates, found: Identified) -> tuple[list[int], list[int], Array, Array]:
+    """Rows and columns of a loop's gauges and actuators in a test, and the size of the units of both."""
     rows = [[channel.name for channel in found.outputs].index(name) for name in loop.gauges]
     columns = [[channel.name for channel in found.inputs].index(name) for name in loop.actuators]
-    return rows, columns, (_sizes(found.outputs, rows), 1.0 / _sizes(found.inputs, columns))
+    return rows, columns, _sizes(found.outputs, rows), _sizes(found.inputs, columns)
 
 
 def _sizes(channels: tuple[Recorded, ...], chosen: list[int]) -> Array:

@@ -12,10 +12,10 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Heading
-from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.quantity import ANGLE, FREQUENCY
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.plant_models.measured_plant import channel_places
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins, feedback_response
 from flexstage.control.systems.closed import Loop
@@ -109,10 +109,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     inside = (lines >= found.band[0]) & (lines <= found.band[1]) & (lines < (0.5 / step if step else np.inf))
     lines = lines[inside]
     require(_few_lines(lines, found))
-    rows = [[each.name for each in found.outputs].index(name) for name in loop.gauges]
-    columns = [[each.name for each in found.inputs].index(name) for name in loop.actuators]
-    outer = np.array([float(dimension_of(found.outputs[row].unit).size) for row in rows])
-    inner = np.array([float(dimension_of(found.inputs[column].unit).size) for column in columns])
+    rows, columns, outer, inner = channel_places(loop, found)
     chosen = np.ix_(np.flatnonzero(inside).tolist(), rows, columns)
     scale = outer[:, None] / inner
     response = known.values[chosen] * scale

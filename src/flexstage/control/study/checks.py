@@ -141,8 +141,6 @@ def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
         )
     if not shaped and found.frequency is not None:
         yield Finding("follow.frequency", f"{found.method.value} has no mode of its own", "Leave it out, or take zv or zvd")
-    if found.damping >= 1.0:
-        yield Finding("follow.damping", f"found {found.damping:g}", "Give less than 1: what does not swing needs no shaper")
     if not 1 <= found.passes <= _MOST_PASSES:
         yield Finding("follow.passes", f"found {found.passes}", f"Give between 1 and {_MOST_PASSES}")
 

@@ -38,7 +38,7 @@ from flexstage.models.theory import Model
 _PEAK = Bound(low=1.0, open_low=True)
 _SHARE = Bound(low=0.0, high=0.5, open_low=True)
 _OVER, _SPREAD = Bound(low=0.02, high=1.0), Bound(low=0.0, high=0.3)
-_DAMPED = Bound(low=0.0, high=1.0, open_low=True)
+_DAMPED, _SWINGING = Bound(low=0.0, high=1.0, open_low=True), Bound(low=0.0, high=1.0, open_high=True)
 _CREEP = Bound(low=-0.2, high=0.2)
 
 
@@ -236,7 +236,7 @@ class FollowSetup(CheckedFields):
     gain: Annotated[float, RATIO, _DAMPED] = 0.6
     spread: Annotated[float, RATIO, _SPREAD] = 0.02
     frequency: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    damping: Annotated[float, RATIO, NOT_NEGATIVE] = 0.0
+    damping: Annotated[float, RATIO, _SWINGING] = 0.0
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -210,6 +210,12 @@ def plain_ticks(*axes: Any, steps: tuple[float, ...] = (1.0,)) -> None:
         axis.set_major_locator(LogLocator(subs=steps, numticks=12))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_locator(NullLocator())
+
+
+def legend_of_lines(figure: Any, panels: Iterable[Any], columns: int = 8) -> None:
+    """A legend above all panels, of their lines that have names."""
+    handles = [line for axes in panels for line in axes.get_lines() if not line.get_label().startswith("_")]
+    figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=columns, handlelength=1.4, borderaxespad=0.2)
 
 
 def _legend(axes: Any, count: int) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.control.show.figures.frequency import plain_ticks
+from flexstage.control.show.figures.frequency import legend_of_lines, plain_ticks
 from flexstage.control.study.compare import DetunedController
 from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, style_context
 
@@ -33,5 +33,5 @@ def front_figure(found: Mapping[str, DetunedController], front: Collection[str])
             for axis in (axes.xaxis, axes.yaxis):
                 low, high = axis.get_view_interval()
                 plain_ticks(axis, steps=(1.0,) if high > 300.0 * low else (1.0, 2.0, 5.0))
-        figure.legend(*grid[0].get_legend_handles_labels(), loc="upper left", ncols=7, handlelength=1.4, borderaxespad=0.2)
+        legend_of_lines(figure, grid[:1], 7)
     return figure

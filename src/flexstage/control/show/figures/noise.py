@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.control.noise import NoiseBudget
-from flexstage.control.show.figures.frequency import plain_ticks, thin_out
+from flexstage.control.show.figures.frequency import legend_of_lines, plain_ticks, thin_out
 from flexstage.show.display import display_unit_of, format_value, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.show.table import short_names
@@ -53,8 +53,7 @@ def noise_spectrum_figure(found: NoiseBudget) -> Any:
         for column, unit in enumerate(units):
             chosen = [index for index, each in enumerate(found.units) if each == unit]
             _column(grid[:, column], found, chosen, unit)
-        handles = [line for axes in grid[0] for line in axes.get_lines()]
-        figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=8, handlelength=1.4, borderaxespad=0.2)
+        legend_of_lines(figure, grid[0])
     return figure
 
 

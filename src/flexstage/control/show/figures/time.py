@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.show.figures.frequency import plain_ticks
+from flexstage.control.show.figures.frequency import legend_of_lines, plain_ticks
 from flexstage.control.simulation.result import Simulated
 from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, HALF, INK, MUTED, SERIES, Margins, canvas, panels, style_context
@@ -97,8 +97,7 @@ def error_figure(test: Simulated) -> Any:
                 count += 1
             axes.set_ylabel(to_typography(f"error [{form.unit}]"))
             axes.set_xlim(float(scaled[0]), float(scaled[-1]))
-        handles = [line for axes in grid[:, 0] for line in axes.get_lines()]
-        figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=8, handlelength=1.4, borderaxespad=0.2)
+        legend_of_lines(figure, grid[:, 0])
         grid[-1, 0].set_xlabel(noun)
     return figure
 
@@ -124,8 +123,7 @@ def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: 
             axes.set_xlim(0.0, len(rms) - 1.0)
             axes.xaxis.get_major_locator().set_params(integer=True)
             plain_ticks(axes.yaxis, steps=(1.0, 2.0, 5.0) if np.ptp(np.log10(rms[:, chosen])) < _FEW else (1.0,))
-        handles = [line for axes in grid[:, 0] for line in axes.get_lines() if not line.get_label().startswith("_")]
-        figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=6, handlelength=1.4, borderaxespad=0.2)
+        legend_of_lines(figure, grid[:, 0], 6)
         grid[-1, 0].set_xlabel(noun)
     return figure
 

@@ -64,15 +64,8 @@ class AmplifierSetup(AmplifierForm):
     @property
     def settings(self) -> AmplifierSettings:
         """As stated."""
-        return AmplifierSettings(
-            bandwidth=self.bandwidth,
-            resistance=self.resistance,
-            current=self.current,
-            slew=self.slew,
-            noise_density=self.noise,
-            bits=self.bits,
-            current_noise=self.current_noise,
-        )
+        named = {name: getattr(self, name) for name in ("bandwidth", "resistance", "current", "slew", "bits", "current_noise")}
+        return AmplifierSettings(noise_density=self.noise, **named)
 
     @property
     def faults(self) -> Iterator[Finding]:
