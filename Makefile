@@ -34,7 +34,7 @@ demo: setup-runtime ## analyse the shipped stage: tables here, the report in dem
 	@test -f demo/stage.toml || $(BIN)/flexstage new demo/stage.toml
 	$(BIN)/flexstage analyse demo/stage.toml --report demo/report.html
 
-quick: setup-dev ## a minute: closed forms, laws at 20 examples, the public surface; no finite elements
+quick: setup-dev ## a minute: closed forms, laws, the public surface; no finite elements
 	FLEXSTAGE_TESTS=quick $(PYTEST) tests/analytic tests/laws tests/hygiene/test_surface.py tests/hygiene/test_contracts.py -k "not solid and not buildable and not strategies and not loop_study"
 
 test: setup-dev ## the tests, but for the examples of the documentation

@@ -34,7 +34,6 @@ linecache.checkcache = lambda filename=None: None if filename is None else _look
 
 FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
 QUICK = os.environ.get("FLEXSTAGE_TESTS") == "quick"
-_FEW = 20
 STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount", "leaf-guide", "resonator"}
 STROKELESS |= {"quad-suspension", "voice-coil-xy", "z-stage", "spiral-stage", "steering-mirror", "long-travel-xy"}
 """Cases whose motion strokes do not determine: there are too few, or none."""
@@ -44,16 +43,15 @@ STROKELESS |= {"quad-suspension", "voice-coil-xy", "z-stage", "spiral-stage", "s
 _SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.nested_given]
 # Shrinking a failing random stage takes minutes and says little more than the stage itself.
 _PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
-settings.register_profile("default", max_examples=25, deadline=None, derandomize=True, suppress_health_check=_SLOW, phases=_PHASES)
+settings.register_profile("default", max_examples=15, deadline=None, derandomize=True, suppress_health_check=_SLOW, phases=_PHASES)
 # At 2000 examples the laws alone take an hour of two cores; at 400, half an hour.
 settings.register_profile("full", max_examples=400, deadline=None, derandomize=True, suppress_health_check=_SLOW)
-settings.register_profile("quick", settings.get_profile("default"), max_examples=_FEW)
-settings.load_profile("full" if FULL else "quick" if QUICK else "default")
+settings.load_profile("full" if FULL else "default")
 
 
 def examples(quick: int, full: int) -> settings:
     """Settings of a test whose random examples are costly: so many in the usual tests, and in the full ones."""
-    return settings(max_examples=full if FULL else min(quick, _FEW) if QUICK else quick)
+    return settings(max_examples=full if FULL else -(-2 * quick // 3))
 
 
 def pytest_configure(config: pytest.Config) -> None:

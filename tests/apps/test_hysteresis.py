@@ -104,7 +104,7 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
     assert "there is no such file" in ended_badly(recorded, "none.csv")
     assert "1000 V to 0 V is no range" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
     assert "step.uff: record: after the step there are" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")
-    assert "stack.csv is a record that is read" in ended_badly(recorded, "stack.csv", "-o", "stack.csv")
+    assert "stack.csv is read by this command" in ended_badly(recorded, "stack.csv", "-o", "stack.csv")
 
 
 def test_responses_show_no_hysteresis(recorded: Command, tmp_path: Path) -> None:

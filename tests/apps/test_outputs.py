@@ -29,9 +29,9 @@ from tests.apps.command import Command, design_in
 BAD_TARGETS = {
     ("--report", "nowhere/report.html"): "no folder nowhere",
     ("--json", "folder"): "it is a folder",
-    ("--mat", "stage.toml"): "the design file",
-    ("--report", "stage.toml"): "the design file",
-    ("--xlsx", "stage.toml"): "the design file",
+    ("--mat", "stage.toml"): "read by this command",
+    ("--report", "stage.toml"): "read by this command",
+    ("--xlsx", "stage.toml"): "read by this command",
 }
 
 
@@ -307,7 +307,7 @@ def test_a_report_shows_what_was_set_and_what_that_did(flexstage: Command, tmp_p
     flexstage("analyse", "stage.toml", "--report", "plain.html")
     changed, plain = ((tmp_path / name).read_text() for name in ("set.html", "plain.html"))
     section = changed.partition('<section id="changes">')[2].partition("</section>")[0]
-    for text in ("parts.neck.thickness", "2 mm", "1.4 mm", "What the change does", "frequency.platform.1", "old", "new", "change"):
+    for text in ("parts.neck.thickness", "2 mm", "1.4 mm", "Changes of key figures", "frequency.platform.1", "old", "new", "change"):
         assert text in section, text
     assert '<section id="changes">' not in plain
 

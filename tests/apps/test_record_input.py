@@ -79,7 +79,7 @@ def test_what_is_no_record_is_refused(
 @pytest.mark.parametrize(
     ("option", "target", "said"),
     [
-        ("--json", "record.uff", "record.uff is a record that is read"),
+        ("--json", "record.uff", "record.uff is read by this command"),
         ("--json", "missing/out.json", "there is no folder missing"),
         ("--json", "folder", "it is a folder"),
         ("--json", "/dev/full", "No space left on device"),

@@ -96,7 +96,7 @@ def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -
         (("--input-signal", "both"), ("--input-signal", "monitor, command")),
         (("-o", "record.xyz"), ("record.xyz", ".uff")),
         (("-o", "nowhere/record.uff"), ("no folder nowhere",)),
-        (("-o", "stage.toml"), ("the design file",)),
+        (("-o", "stage.toml"), ("read by this command",)),
     ],
 )
 def test_bad_input_is_named_and_nothing_written(

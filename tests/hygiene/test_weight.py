@@ -16,14 +16,14 @@ CEILINGS = {
     "cases": 13_700,
     "models": 113_900,
     "analysis": 70_200,
-    "show": 73_700,
-    "solid": 80_100,
-    "experiment": 103_200,
-    "control": 172_700,
-    "studies": 55_100,
-    "apps": 38_800,
+    "show": 74_400,
+    "solid": 79_800,
+    "experiment": 102_700,
+    "control": 172_600,
+    "studies": 54_900,
+    "apps": 37_900,
     ".": 400,
-    "all": 885_300,
+    "all": 883_900,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -272,7 +272,6 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
     table = noise_table(found)
     assert [column.head for column in table.columns] == [
         "coordinate",
-        "unit",
         "rms",
         "95 %, low",
         "95 %, high",

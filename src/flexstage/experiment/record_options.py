@@ -82,18 +82,18 @@ FrequencyResolution: TypeAlias = Annotated[
 
 @dataclass(frozen=True)
 class RecordTexts:
-    """What the user says about records, as texts of the command line."""
+    """What the user says about records, as texts of the command line; not every command asks for the `excitation`."""
 
-    inputs: list[str] | None = None
-    outputs: list[str] | None = None
-    channels: list[str] | None = None
-    units: list[str] | None = None
-    rate: str | None = None
-    kind: str | None = None
-    accept_fault: list[str] | None = None
-    band: tuple[str, str] | None = None
-    frequency_resolution: str | None = None
-    arrays: list[str] | None = None
+    inputs: Inputs = None
+    outputs: Outputs = None
+    channels: Channels = None
+    units: Units = None
+    rate: Rate = None
+    arrays: Arrays = None
+    kind: Kind = None
+    accept_fault: AcceptFault = None
+    band: Band = None
+    frequency_resolution: FrequencyResolution = None
     excitation: Excitation | None = None
 
     def options(self) -> options.Options:

@@ -366,7 +366,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
     """The column of a field and its cells, not graded."""
     heading, quantity = field.heading, field.annotation(Quantity)
     form = display_unit(quantity, heading.unit)
-    if field.type == tuple[float, float]:
+    if field.type == tuple[float, float] and not any(isinstance(each, NUMBERS) for each in values):
         ends = [NO_VALUE if each is None else interval_text(*(form.factor * end for end in each)) for each in values]
         return Column(heading.text, form.unit), [Cell(text) for text in ends]
     if not all(isinstance(each, (*NUMBERS, np.ndarray)) and not isinstance(each, bool) for each in values if each is not None):
@@ -414,7 +414,8 @@ def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, hea
     >>> [cells[0].text for _, cells in matrix_columns(Matrix(np.array([[2e-6], [1e-3]]), ("x", "rx"), ("low",), (("m",), ("rad",))))]
     ['2 um']
     """
-    for name, values, units in zip(matrix.columns, first_design(matrix.values, 2).T, zip(*_entry_units(matrix), strict=True), strict=True):
+    entries = list(zip(*_entry_units(matrix), strict=True)) or [()] * len(matrix.columns)
+    for name, values, units in zip(matrix.columns, first_design(matrix.values, 2).T, entries, strict=True):
         own = fields.get(name)
         yield field_column(own if own and own.annotation(Heading) else Field(name, float, (heading,)), list(values), units)
 

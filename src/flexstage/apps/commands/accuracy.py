@@ -16,25 +16,13 @@ from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.base.units.unit import parse
-from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer, print_missing
-from flexstage.show.command.design import elastic_model, open_design
+from flexstage.show.command.answer import CommandResult, command, print_missing
+from flexstage.show.command.design import elastic_model
 from flexstage.show.command.displaced import Place, footing
-from flexstage.show.command.options import (
-    Changes,
-    Csv,
-    Design,
-    Json,
-    ModelName,
-    Point,
-    Xlsx,
-    modes_option,
-    parameters_option,
-    temperature_option,
-    text_option,
-)
+from flexstage.show.command.options import ModelName, Point, modes_option, parameters_option, temperature_option, text_option
 from flexstage.show.command.values import motions, names
 from flexstage.show.table import Table, result_table
 from flexstage.show.tables import workspace as tables
@@ -52,52 +40,38 @@ Commands: TypeAlias = Annotated[
 ]
 
 
+@command()
 def workspace(
-    design: Design,
+    mechanism: Mechanism,
     *,
     model: ModelName = Model.LUMPED,
     command: Commands = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """What the stage reaches and bears.
 
     Strokes, forces, volts, gauges, clearance, error of the linear map, stress, buckling, loads. Of a stage that forces move: how far, what
     limits it, and the current, volts and heat of holding it there.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
         reached = force_workspace(mechanism, kinematics, elastic_model(mechanism, model))
         small = second_order(mechanism, kinematics, motions(command or ()) or required_command(mechanism))
-        answer(
-            "workspace",
+        return CommandResult(
             mechanism,
             lambda: _with_error(reached, small),
             lambda: [_small_text(small), *force_workspace_tables(reached)],
             model=model,
-            json=json,
-            csv=csv,
-            xlsx=xlsx,
         )
-        return
     stands = footing(mechanism, Place(), model)
     lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, stands.links)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
     small = second_order(mechanism, kinematics, found.command)
-    answer(
-        "workspace",
+    return CommandResult(
         mechanism,
         lambda: _with_error(stands.body(found), small),
         lambda: [*stands.tables(), _small_text(small), *_workspace_tables(found)],
         model=model,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
     )
 
 
@@ -119,8 +93,9 @@ def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
     yield from tables.strength_tables(workspace)
 
 
+@command()
 def drift(
-    design: Design,
+    mechanism: Mechanism,
     *,
     ground: Annotated[
         str | None,
@@ -128,90 +103,62 @@ def drift(
             "--ground", "MATERIAL", "Material of the ground; none: it does not grow. Default: the design's, else that of all links on it."
         ),
     ] = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Thermal drift of platform, named points and gauges.
 
     Per kelvin and per kelvin per metre, by the lumped model; of the loaded stage where its dead load is felt.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
     stands = footing(mechanism, Place())
     found = drifting.drift(mechanism, stands.links, ground=ground)
-    answer(
-        "drift",
+    return CommandResult(
         mechanism,
         lambda: stands.body(found),
         lambda: [*stands.tables(), drift_table(found), gauge_drift_table(found)],
         model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
     )
 
 
+@command()
 def sensitivities(
-    design: Design,
+    mechanism: Mechanism,
     *,
     parameters: Annotated[list[str] | None, parameters_option("every number")] = None,
     count: Annotated[int, modes_option(min=1)] = 12,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Exact derivatives with respect to every number.
 
     Of frequencies, gains and losses, by the lumped model; of frequencies alone where the strokes do not determine the platform.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
     found = derivatives.sensitivities(mechanism, names(parameters) if parameters else None, modes=count)
-    answer(
-        "sensitivities",
+    print_missing(found.missing)
+    return CommandResult(
         mechanism,
         lambda: found,
         lambda: [frequency_sensitivity_table(found), loss_sensitivity_table(found)],
         model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
     )
-    print_missing(found.missing)
 
 
+@command()
 def budget(
-    design: Design,
+    mechanism: Mechanism,
     *,
     command: Commands = None,
     temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,
     point: Point = PLATFORM,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Error budget in nm and nrad, one line an axis.
 
     Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped model.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     stands = footing(mechanism, Place())
     found = budgeting.budget(mechanism, asked, at=point, temperature=warmth)
     small = second_order(mechanism, ideal(mechanism), asked)
-    answer(
-        "budget",
+    return CommandResult(
         mechanism,
         lambda: _with_error(stands.body(found), small),
         lambda: [*stands.tables(), _small_text(small), *error_budget_tables(found)],
         model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
     )

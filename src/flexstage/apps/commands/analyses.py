@@ -29,10 +29,10 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer
-from flexstage.show.command.design import known_point, open_design
-from flexstage.show.command.displaced import At, Fixed, Load, Temperature, footing, place
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, band_option, text_option
+from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.design import known_point
+from flexstage.show.command.displaced import Place, footing
+from flexstage.show.command.options import ModelName, Point, band_option, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
@@ -51,28 +51,21 @@ from flexstage.solid.show.moving import glb_of
 from flexstage.spatial.frame import COMPONENTS
 
 
-def mapping(
-    design: Design, *, model: ModelName = Model.IDEAL, changes: Changes = None, json: Json = None, csv: Csv = None, xlsx: Xlsx = None
-) -> None:
+@command()
+def mapping(mechanism: Mechanism, *, model: ModelName = Model.IDEAL) -> CommandResult:
     """Mappings R_a and R_s, mobility, redundancy.
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
 
     With an elastic model, the elastic motion per stroke T too.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     twist = tuple(f"platform.{name}" for name in COMPONENTS)
-    answer(
-        "mapping",
+    return CommandResult(
         mechanism,
         lambda: walk(kinematics) | ({} if linear is None else {"elastic_jacobian": static_gain(linear, twist, linear.actuators)}),
         lambda: _mapping_tables(kinematics),
         model=model,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
     )
 
 
@@ -87,30 +80,25 @@ def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
     yield from map(result_table, (kinematics.idle, kinematics.redundant))
 
 
-def stiffness(  # noqa: PLR0913 (its options)
-    design: Design,
+@command()
+def stiffness(
+    mechanism: Mechanism,
     *,
     model: ModelName = Model.LUMPED,
     point: Point = PLATFORM,
     load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: that of --point.")] = "",
-    at: At = None,
-    load: Load = None,
-    fixed: Fixed = None,
-    temperature: Temperature = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+    place: Place,
+) -> CommandResult:
     """Compliance and stiffness of the platform.
 
     6x6, by direction in the plane, by freedom of stages with fewer than six, and the centre of stiffness; strokes held. Mass at the point.
 
     With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    require(Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in at or () if "=" not in text)
-    there = footing(mechanism, place(at, load, fixed, temperature), model)
+    require(
+        Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in place.at or () if "=" not in text
+    )
+    there = footing(mechanism, place, model)
     linear = there.linear
     read_point = known_point(linear, point, "--point")
     found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
@@ -118,15 +106,11 @@ def stiffness(  # noqa: PLR0913 (its options)
     mass = mass_matrix(mechanism, linear, point=point)
     attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
     freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
-    answer(
-        "stiffness",
+    return CommandResult(
         mechanism,
         lambda: there.body(stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing)),
         lambda: [*there.tables(), *_stiffness_tables(found, freedoms, mass, sagging)],
         model=model,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
         warnings=there.warnings,
     )
 
@@ -144,37 +128,26 @@ def _stiffness_tables(
     yield None if sagging is None else deflection_table(sagging)
 
 
-def lost_motion(  # noqa: PLR0913 (its options)
-    design: Design,
+@command()
+def lost_motion(
+    mechanism: Mechanism,
     *,
     model: ModelName = Model.LUMPED,
-    at: At = None,
-    load: Load = None,
-    fixed: Fixed = None,
-    temperature: Temperature = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+    place: Place,
+) -> CommandResult:
     """Gain, loss and its budget by part, crosstalk, correction.
 
     What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
 
     With --at, --load, --fixed or --temperature: about that operating point. The ideal motion is that of the undeformed configuration.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = footing(mechanism, place(at, load, fixed, temperature), model)
+    there = footing(mechanism, place, model)
     found = losses.lost_motion(ideal(mechanism), there.links)
-    answer(
-        "lost-motion",
+    return CommandResult(
         mechanism,
         lambda: there.body(found),
         lambda: [*there.tables(), *_loss_tables(found)],
         model=model,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
         warnings=there.warnings,
     )
 
@@ -189,23 +162,17 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
     yield loss_tables.energy_table(found)
 
 
-def modes(  # noqa: PLR0913 (its options)
-    design: Design,
+@command("view")
+def modes(
+    mechanism: Mechanism,
     *,
     model: ModelName = Model.LUMPED,
     view: Annotated[
         Path | None,
         text_option("--view", "STAGE.HTML", "Write the stage in motion: a page that stands alone (.html), or a GLB file (.glb)."),
     ] = None,
-    at: At = None,
-    load: Load = None,
-    fixed: Fixed = None,
-    temperature: Temperature = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+    place: Place,
+) -> CommandResult:
     """Natural frequencies, names and shapes.
 
     Which modes are the platform's, which are local, and what share each has of its energy and compliance. --view shows them, no finite
@@ -213,11 +180,10 @@ def modes(  # noqa: PLR0913 (its options)
 
     With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
-    ending, asked = None if view is None else _view_ending(view), place(at, load, fixed, temperature)
-    if ending == ".glb" and asked:
-        raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {asked.options}, or write a page (.html)")
-    there = footing(mechanism, asked, model)
+    ending = None if view is None else _view_ending(view)
+    if ending == ".glb" and place:
+        raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {place.options}, or write a page (.html)")
+    there = footing(mechanism, place, model)
     linear = there.linear
     found = platform_modes(mechanism, linear)
     if view is not None:
@@ -228,15 +194,11 @@ def modes(  # noqa: PLR0913 (its options)
             else _moving_there(mechanism, there.operating_point, found),
             "--view",
         )
-    answer(
-        "modes",
+    return CommandResult(
         mechanism,
         lambda: there.body(found),
         lambda: [*there.tables(), mode_table(found)],
         model=model,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
         warnings=there.warnings,
     )
 
@@ -261,8 +223,9 @@ def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> 
     return view_of(mechanism, modes_at_data(mechanism, there, found, "about where it stands"), "state 1").html
 
 
-def response(  # noqa: PLR0913 (its options)
-    design: Design,
+@command()
+def response(
+    mechanism: Mechanism,
     *,
     model: ModelName = Model.LUMPED,
     inputs: Annotated[
@@ -287,15 +250,8 @@ def response(  # noqa: PLR0913 (its options)
             "Repeatable.",
         ),
     ] = None,
-    at: At = None,
-    load: Load = None,
-    fixed: Fixed = None,
-    temperature: Temperature = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+    place: Place,
+) -> CommandResult:
     """Frequency response of outputs to inputs.
 
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
@@ -303,8 +259,7 @@ def response(  # noqa: PLR0913 (its options)
 
     With --at, --load, --fixed or --temperature: about that operating point.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = footing(mechanism, place(at, load, fixed, temperature), model)
+    there = footing(mechanism, place, model)
     linear = there.linear
     law = damping_law(linear)
     grid = responses.default_frequencies(linear, _hertz(band), damping=law)
@@ -312,8 +267,7 @@ def response(  # noqa: PLR0913 (its options)
     found = responses.response(linear, chosen, inputs or linear.actuators, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
     shaken = random_response(linear, chosen, spectra(linear, input_asd), limits, damping=law) if input_asd else None
-    answer(
-        "response",
+    return CommandResult(
         mechanism,
         lambda: there.body(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken}))),
         lambda: [
@@ -322,9 +276,6 @@ def response(  # noqa: PLR0913 (its options)
             None if shaken is None else random_table(shaken),
         ],
         model=model,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
         warnings=there.warnings,
     )
 

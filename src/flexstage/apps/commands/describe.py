@@ -95,7 +95,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Also lists warnings and default values. Neither changes the exit code.
     """
-    require_writable([("--json", json)], design)
+    require_writable([("--json", json)], [design])
     try:
         text = read_text(design)
         mechanism = change(loads(text, where=str(design), folder=design.parent), changes or ())

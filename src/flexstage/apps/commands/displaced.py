@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -28,11 +29,10 @@ from flexstage.models.nonlinear.paths.load_path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.actuator import StrokeActuator
-from flexstage.show.command.answer import answer
-from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Fixed, Load, Place, Temperature, loads_of, place
-from flexstage.show.command.options import STEPS, Changes, Csv, Design, Json, Report, Xlsx, text_option
-from flexstage.show.command.output import announce, save
+from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.displaced import Load, Place, loads_of
+from flexstage.show.command.options import STEPS, text_option
+from flexstage.show.command.output import announce
 from flexstage.show.displaced import (
     buckling_report,
     buckling_tables,
@@ -48,8 +48,9 @@ from flexstage.show.displaced import (
 from flexstage.spatial.frame import COMPONENTS
 
 
-def stroke(  # noqa: PLR0913 (its options)
-    design: Design,
+@command("report")
+def stroke(
+    mechanism: Mechanism,
     *,
     named: Annotated[str, text_option("--path", "NAME", "A path of the design, [paths.NAME]. Default: the first that it states.")] = "",
     drive: Annotated[
@@ -59,18 +60,12 @@ def stroke(  # noqa: PLR0913 (its options)
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: the actuator\'s stroke, 0.1 mm, 1 mrad.')] = "",
     steps: Annotated[int | None, STEPS] = None,
     load: Load = None,
-    report: Report = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Force, stiffness, parasitic motion, frequencies over a stroke.
 
     At large displacements, under the stage's weight and the loads that are named: every point is an equilibrium, and its frequencies and
     stiffness are those of the stage there. Strokes count from where the stage sags to.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     model = nonlinear(mechanism)
     elsewhere, loads = bool(drive or start or end), loads_of(model, load or ())
     if named and elsewhere:
@@ -84,19 +79,8 @@ def stroke(  # noqa: PLR0913 (its options)
     rest = asked.rest(model)
     along = asked.path(model, rest)
     found = over_stroke(along, rest, kinematics=ideal(mechanism) if asked.drive in model.assembly.strokes else None)
-    if report is not None:
-        save(report, stroke_report(mechanism, along, found), "--report")
-    answer(
-        "stroke",
-        mechanism,
-        lambda: found,
-        lambda: stroke_tables(found),
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        warnings=found.warnings,
-        beside=(report,),
-    )
+    page = partial(stroke_report, mechanism, along, found)
+    return CommandResult(mechanism, lambda: found, lambda: stroke_tables(found), page, warnings=found.warnings)
 
 
 def _first_path(mechanism: Mechanism) -> str:
@@ -152,8 +136,9 @@ class Buckling:
     """Equilibria from there on, a row a point, along the factor."""
 
 
-def buckle(  # noqa: PLR0913 (its options)
-    design: Design,
+@command("report")
+def buckle(
+    mechanism: Mechanism,
     *,
     scale_load: Annotated[
         list[str] | None,
@@ -164,20 +149,12 @@ def buckle(  # noqa: PLR0913 (its options)
             "Default: the weight at a stated operating point, else every load case.",
         ),
     ] = None,
-    at: At = None,
-    load: Load = None,
-    fixed: Fixed = None,
-    temperature: Temperature = None,
+    place: Place,
     post_buckling: Annotated[
         int, typer.Option("--post-buckling", metavar="N", min=0, help="Number of equilibria beyond the lowest critical load.")
     ] = 0,
     branch: Annotated[BranchSide, typer.Option("--branch", help="Branch: along the buckling mode, or against it.")] = BranchSide.ALONG,
-    report: Report = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Find the load at which the stage buckles.
 
     At large displacements: a limit point, a bifurcation, or an imperfect bifurcation. All other loads are constant, the weight too.
@@ -185,25 +162,17 @@ def buckle(  # noqa: PLR0913 (its options)
     Without --scale-load and operating point: each load case (weight, stated forces, loads of paths), at rest and at all ends of paths
     and strokes.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    asked = place(at, load, fixed, temperature)
-    cases = (_case(mechanism, asked, scale_load or ()),) if scale_load or at or load or fixed else load_cases(mechanism)
-    found = buckling_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
+    cases = (_case(mechanism, place, scale_load or ()),) if scale_load or place.at or place.load or place.fixed else load_cases(mechanism)
+    found = buckling_factors(mechanism, cases, temperature=place.warmth, demand=asked_factor(mechanism))
     require(_unanswered(found))
     after = _beyond(found, cases, branch, post_buckling) if post_buckling else None
     told = _buckling(found, after)
-    if report is not None:
-        save(report, buckling_report(mechanism, found, after), "--report")
-    answer(
-        "buckle",
+    return CommandResult(
         mechanism,
         lambda: told,
         lambda: buckling_tables(found, after),
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
+        partial(buckling_report, mechanism, found, after),
         warnings=found.warnings if after is None else (*found.warnings, *after.stroke.warnings),
-        beside=(report,),
     )
 
 
@@ -223,9 +192,12 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
 def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase:
     """What the options name: the load that grows, else the weight, and the operating point."""
     model = nonlinear(mechanism)
-    grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, asked.load), asked.brought(model)
+    grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, asked.load or ()), asked.brought(model)
     require_consistent(model, there, {**grows, **stays}, asked.locked)
-    text, where = (", ".join(scaled) or WEIGHT), ", ".join([*asked.at, *asked.load, *(f"{name} fixed" for name in asked.locked)])
+    text, where = (
+        (", ".join(scaled) or WEIGHT),
+        ", ".join([*(asked.at or ()), *(asked.load or ()), *(f"{name} fixed" for name in asked.locked)]),
+    )
     return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, stays=stays, at=there, locked=asked.locked)
 
 
@@ -238,8 +210,9 @@ def _unanswered(found: CaseFactors) -> Iterator[Finding]:
         yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another operating point")
 
 
-def misalign(  # noqa: PLR0913 (its options)
-    design: Design,
+@command("report")
+def misalign(
+    mechanism: Mechanism,
     *,
     instance: Annotated[
         str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link on the ground. Default: each.")
@@ -254,12 +227,7 @@ def misalign(  # noqa: PLR0913 (its options)
         str, text_option("--amount", "VALUE", 'Amount of misalignment, e.g. "1 mrad" or "10 um". Default: 1 mrad or 0.1 mm.')
     ] = "",
     steps: Annotated[int, STEPS] = 11,
-    report: Report = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Compute internal loads of a misaligned, over-constrained stage.
 
     An instance of a unit, or a link, is forced into a rotated or translated seat on the ground. Results: loads in all flexures,
@@ -268,7 +236,6 @@ def misalign(  # noqa: PLR0913 (its options)
     Without --instance: critical misalignment, load and stress of each instance, about all axes or the stated one. The report animates
     the worst.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     axis = _axis(rotation, translation)
     quantity = ANGLE if axis.startswith("r") else LENGTH
     wanted = parse(amount, quantity, where="--amount") if amount else (1e-3 if quantity is ANGLE else 1e-4)
@@ -278,34 +245,16 @@ def misalign(  # noqa: PLR0913 (its options)
         told = misalignments(mechanism, (axis,) if rotation or translation else COMPONENTS[3:], size=wanted)
         if told.worst is None:
             raise refuse("stage", "no instance of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
-        if report is not None:
-            save(report, misalignments_report(mechanism, told), "--report")
-        answer(
-            "misalign",
+        return CommandResult(
             mechanism,
             lambda: told,
             lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --instance NAME."],
-            json=json,
-            csv=csv,
-            xlsx=xlsx,
+            partial(misalignments_report, mechanism, told),
             warnings=told.warnings,
-            beside=(report,),
         )
-        return
     found = misaligned(mechanism, instance, axis, wanted, points=steps)
-    if report is not None:
-        save(report, misalign_report(mechanism, found), "--report")
-    answer(
-        "misalign",
-        mechanism,
-        lambda: found,
-        lambda: misaligned_tables(found),
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        warnings=found.warnings,
-        beside=(report,),
-    )
+    page = partial(misalign_report, mechanism, found)
+    return CommandResult(mechanism, lambda: found, lambda: misaligned_tables(found), page, warnings=found.warnings)
 
 
 def _axis(rotation: str, translation: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -16,11 +17,12 @@ from flexstage.control.hysteresis.stack import dumps_hysteresis
 from flexstage.control.hysteresis.stack_test import Channels, stack_test
 from flexstage.experiment.record_options import Arrays, Rate, RecordTexts, Units, open_records
 from flexstage.experiment.records.record import Record
-from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Json, Report, Xlsx, output_option, text_option
-from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.options import output_option, text_option
+from flexstage.show.command.output import save
 
 
+@command("output", "report")
 def hysteresis(  # noqa: PLR0913 (its options)
     record: Annotated[
         Path,
@@ -37,11 +39,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     rate: Rate = None,
     arrays: Arrays = None,
     output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for the loop.")] = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-    report: Report = None,
-) -> None:
+) -> CommandResult:
     """Identify the hysteresis of a stack.
 
     From a record of volts and stroke: a Prandtl-Ishlinskii model that has an inverse, sized on parts of the record that are not fitted.
@@ -49,27 +47,14 @@ def hysteresis(  # noqa: PLR0913 (its options)
     With the record of a step, its creep.
     """
     records = [record] if step is None else [record, step]
-    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], records=records)
     between = None if limits is None else _volts(limits)
     reader = RecordTexts(units=units, rate=rate, kind="record", arrays=arrays)
     opened = [_open(each, reader) for each in records]
     found = stack_test(opened[0], Channels(volts, stroke), step=None if step is None else opened[1], limits=between)
     if output is not None:
         save(output, dumps_hysteresis(found.stack), "--output")
-    if report is not None:
-        save(report, hysteresis_report(found), "--report")
-    warnings = found.hysteresis.warnings
-    answer(
-        "hysteresis",
-        None,
-        lambda: found,
-        lambda: stack_tables(found),
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        warnings=warnings,
-        beside=(report, output),
-    )
+    page = partial(hysteresis_report, found)
+    return CommandResult(None, lambda: found, lambda: stack_tables(found), page, warnings=found.hysteresis.warnings)
 
 
 def _open(path: Path, reader: RecordTexts) -> Record:

@@ -43,9 +43,9 @@ from flexstage.experiment.pipeline import Identification, Told, identification, 
 from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer
+from flexstage.show.command.answer import CommandResult, write_answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Fixed, Footing, Load, Place, Temperature, footing, place
+from flexstage.show.command.displaced import At, Fixed, Footing, Load, Place, Temperature, footing
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
     FEA,
@@ -64,7 +64,7 @@ from flexstage.show.command.options import (
     text_option,
     word_option,
 )
-from flexstage.show.command.output import announce, require_writable, save, write
+from flexstage.show.command.output import announce, require_writable, write
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.values import Values, amplifier_values
 from flexstage.show.table import Table
@@ -233,7 +233,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     }
     asked = override(given, options)
     require([*values.findings, *setup_findings(asked), *file_findings(asked, exports, hardware)])
-    where = place(at, load, fixed, temperature)
+    where = Place(at, load, fixed, temperature)
     require(_fea_findings(where, model) if fea else ())
     written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *written_files(exports, hardware)]
     mechanism = open_design(design, changes, written)
@@ -289,20 +289,15 @@ def _compare(asking: _Asking, outputs: _Written) -> None:
         test = asking.test(shown.share)
         there = stands.operating_point
         rivals = compare_controllers(mechanism, asked, there=there, solid=asking.solid, test=test, tell=shown.share, workers=cores())
-    if outputs.report is not None:
-        save(outputs.report, pages.comparison_report(mechanism, asked, rivals), "--report")
-    answer(
-        "loops",
+    found = CommandResult(
         mechanism,
         lambda: rivals,
         lambda: [*stands.tables(), *tables.comparison_tables(rivals)],
-        model=asking.model,
-        json=outputs.json,
-        csv=outputs.csv,
-        xlsx=outputs.xlsx,
-        warnings=(*stands.warnings, *rivals.warnings),
-        beside=(outputs.report,),
+        lambda: pages.comparison_report(mechanism, asked, rivals),
+        asking.model,
+        (*stands.warnings, *rivals.warnings),
     )
+    write_answer("loops", found, vars(outputs), outputs.csv)
 
 
 def _close(asking: _Asking, outputs: _Written) -> None:
@@ -311,24 +306,19 @@ def _close(asking: _Asking, outputs: _Written) -> None:
     with progress_bar() as shown:
         test = asking.test(shown.share)
         found = loop_study(asking.mechanism, asking.asked, there=stands.operating_point, solid=asking.solid, test=test, tell=shown.share)
-    if outputs.report is not None:
-        save(outputs.report, pages.loop_report(found), "--report")
     for target in outputs.exports:
         write_export(found, target)
     if outputs.hardware is not None:
         write_hardware(found, outputs.hardware, outputs.precision)
-    answer(
-        "loop",
+    closed = CommandResult(
         asking.mechanism,
         lambda: stands.body(found) if stands.operating_point is not None else found,
         lambda: [*stands.tables(), *_tables(found)],
-        model=asking.model,
-        json=outputs.json,
-        csv=outputs.csv,
-        xlsx=outputs.xlsx,
-        warnings=(*stands.warnings, *found.warnings),
-        beside=(outputs.report,),
+        lambda: pages.loop_report(found),
+        asking.model,
+        (*stands.warnings, *found.warnings),
     )
+    write_answer("loop", closed, vars(outputs), outputs.csv)
 
 
 def _fea_findings(where: Place, model: Model | None) -> Iterator[Finding]:
@@ -358,7 +348,7 @@ def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> 
 
 
 def _write_example(design: Path, example: Path) -> None:
-    require_writable([("--example", example)], design)
+    require_writable([("--example", example)], [design])
     write(example, commented_example(), "--example")
     announce(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
@@ -12,31 +13,15 @@ import typer
 from flexstage.base.record import SideBySide
 from flexstage.experiment.comparison import compare
 from flexstage.experiment.pipeline import Identification
-from flexstage.experiment.record_options import (
-    AcceptFault,
-    Arrays,
-    Band,
-    Channels,
-    FrequencyResolution,
-    Inputs,
-    Kind,
-    Moved,
-    Outputs,
-    Rate,
-    RecordTexts,
-    Units,
-    identify_records,
-    shapes_on,
-)
+from flexstage.experiment.record_options import Moved, RecordTexts, identify_records, shapes_on
 from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.experiment.show.report import identify_report
 from flexstage.experiment.show.tables import identified_table, measured_shape_table, recorded_table
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer
+from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.options import Csv, Json, Report, Xlsx, text_option
-from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.options import text_option
 from flexstage.show.command.terminal import print_warning
 from flexstage.show.table import Table, result_table
 
@@ -48,41 +33,27 @@ Records: TypeAlias = Annotated[
 ]
 
 
-def identify(  # noqa: PLR0913 (its options)
+@command("report")
+def identify(
     records: Records,
     *,
     stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Draw the shapes on this stage.")] = None,
-    inputs: Inputs = None,
-    outputs: Outputs = None,
-    channels: Channels = None,
-    units: Units = None,
-    rate: Rate = None,
-    arrays: Arrays = None,
-    kind: Kind = None,
-    accept_fault: AcceptFault = None,
-    band: Band = None,
-    frequency_resolution: FrequencyResolution = None,
+    texts: RecordTexts,
     excitation: Moved = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-    report: Report = None,
-) -> None:
+) -> CommandResult:
     """Find the modes in records of a test.
 
     Frequencies, damping and shapes with 95 % intervals, from white or other noise at the inputs; nothing is picked by hand.
 
     Bad channels are named and explained, and used only with --accept-fault.
     """
-    texts = RecordTexts(inputs, outputs, channels, units, rate, kind, accept_fault, band, frequency_resolution, arrays, excitation)
-    require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], stage, records)
+    texts = replace(texts, excitation=excitation)
     mechanism = None if stage is None else open_design(stage)
     seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Model.LUMPED))
     seen = seen if mechanism is None else _with_doubts(mechanism, seen)
     shapes = None if mechanism is None else shapes_on(mechanism, seen)
-    if report is not None:
-        save(report, identify_report(seen, mechanism, shapes), "--report")
-    answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, csv=csv, xlsx=xlsx, beside=(report,))
+    page = partial(identify_report, seen, mechanism, shapes)
+    return CommandResult(mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), page)
 
 
 def _with_doubts(mechanism: Mechanism, seen: Identification) -> Identification:

@@ -12,21 +12,7 @@ from flexstage.analysis.loaded.standing import standing
 from flexstage.base.finding import refuse
 from flexstage.base.units.quantity import RATIO
 from flexstage.base.units.unit import parse
-from flexstage.experiment.record_options import (
-    RECORD,
-    AcceptFault,
-    Arrays,
-    Band,
-    Channels,
-    FrequencyResolution,
-    Inputs,
-    Kind,
-    Outputs,
-    Rate,
-    RecordTexts,
-    Units,
-    identify_records,
-)
+from flexstage.experiment.record_options import RECORD, RecordTexts, identify_records
 from flexstage.experiment.updating import update as updating
 from flexstage.experiment.updating.free import DEFAULT, Prior
 from flexstage.experiment.updating.free import free as free_numbers
@@ -36,13 +22,14 @@ from flexstage.experiment.virtual_rig.plan import highest_mode
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Design, Json, Xlsx, output_option, parameters_option, text_option
-from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.options import Design, output_option, parameters_option, text_option
+from flexstage.show.command.output import save
 from flexstage.show.command.terminal import print_warning
 from flexstage.show.command.values import names
 
 
+@command("output")
 def update(  # noqa: PLR0913 (its options)
     design: Design,
     *,
@@ -64,28 +51,14 @@ def update(  # noqa: PLR0913 (its options)
     gain_error: Annotated[
         str, typer.Option("--gain-error", metavar="SHARE", help="Relative standard deviation of gains: theory, gauges and drives.")
     ] = "0.1 %",
-    inputs: Inputs = None,
-    outputs: Outputs = None,
-    channels: Channels = None,
-    units: Units = None,
-    rate: Rate = None,
-    arrays: Arrays = None,
-    kind: Kind = None,
-    accept_fault: AcceptFault = None,
-    band: Band = None,
-    frequency_resolution: FrequencyResolution = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+    texts: RecordTexts,
+) -> CommandResult:
     """Bring a stage's numbers to agree with a test.
 
     Bayesian least squares: values, standard deviations, correlations, and how well the test tells each number.
 
     Writes a new design file with the values tagged; comments stay, and the file that was read stays as it is.
     """
-    texts = RecordTexts(inputs, outputs, channels, units, rate, kind, accept_fault, band, frequency_resolution, arrays)
-    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx)], design, record)
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)
     mechanism = loads(text, where=str(design))
@@ -97,17 +70,7 @@ def update(  # noqa: PLR0913 (its options)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for warning in found.data_warnings[len(seen.found.data_warnings) :]:
         print_warning(warning)
-    answer(
-        "update",
-        mechanism,
-        lambda: found,
-        lambda: update_tables(found),
-        model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        beside=(output,),
-    )
+    return CommandResult(mechanism, lambda: found, lambda: update_tables(found), model=Model.LUMPED)
 
 
 def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Prior:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from functools import wraps
+from inspect import Parameter, Signature, signature
 from itertools import chain, count
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ParamSpec, get_origin, get_type_hints
 
 from rich.console import Console
 
@@ -17,7 +20,9 @@ from flexstage.base.storage.document import Document, as_text
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
-from flexstage.show.command.output import STDOUT, announce, make_folder, save, write
+from flexstage.show.command.design import DesignOptions
+from flexstage.show.command.options import Csv, Json, Report, Xlsx
+from flexstage.show.command.output import STDOUT, announce, make_folder, require_writable, save, write
 from flexstage.show.command.terminal import print_note, print_styled, print_warning
 from flexstage.show.document import envelope
 from flexstage.show.render import fold, to_rich
@@ -30,37 +35,99 @@ _LONGEST = 200
 _HANG = 2
 
 
-def answer(  # noqa: PLR0913 (all that a command can ask for)
-    kind: str,
-    mechanism: Mechanism | None,
-    body: Callable[[], Any],
-    tables: Callable[[], Iterable[Table | str | None]],
-    *,
-    json: str | None,
-    csv: Path | None = None,
-    xlsx: Path | None = None,
-    model: Model | None = None,
-    warnings: tuple[Finding, ...] = (),
-    beside: tuple[Path | None, ...] = (),
-) -> None:
-    """Write the JSON document, CSV files and workbook that are asked for, and show the tables unless stdout is one of them.
+@dataclass(frozen=True)
+class CommandResult:
+    """What a command found: the `body` of its document, its `tables` and the HTML of its `report`, each made where it is asked for.
 
-    `kind` is that of the document, `mechanism` the description it is about (`None`: none, a record alone). `warnings` are the result's
-    own, told after those about the description. `beside` are the command's other outputs: where one of them goes to stdout, tables do not,
-    and warnings go to stderr.
+    `mechanism` is the description it is about (`None`: a record alone), `model` the theory it is of. `warnings` are the result's own, told
+    after those about the description.
     """
-    write_csv(csv, kind, body)
-    write_workbook(xlsx, body, lambda: envelope(kind, mechanism, model, {}, warnings))
+
+    mechanism: Mechanism | None
+    body: Callable[[], Any]
+    tables: Callable[[], Iterable[Table | str | None]]
+    report: Callable[[], str] | None = None
+    model: Model | None = None
+    warnings: tuple[Finding, ...] = ()
+
+
+_OUTPUTS = {"json": Json, "csv": Csv, "xlsx": Xlsx, "report": Report}
+_KINDS: Mapping[Any, Any] = {Mechanism: DesignOptions}
+_Given = ParamSpec("_Given")
+
+
+def command(*files: str) -> Callable[[Callable[_Given, CommandResult]], Callable[_Given, None]]:
+    """Make a command of a function that returns a `CommandResult`: documents where they are asked for, else tables.
+
+    A parameter whose type is a dataclass stands for the options among its fields; a `Mechanism` is opened from its file. `files` name the
+    options of further output files: those that the function writes, and `report`. All outputs are tried before the function is called.
+    Where one of them goes to stdout, tables do not, and warnings go to stderr.
+    """
+
+    def decorate(function: Callable[_Given, CommandResult]) -> Callable[_Given, None]:
+        own = signature(function, eval_str=True).parameters
+        kinds: dict[str, Any] = {name: _KINDS.get(each.annotation, each.annotation) for name, each in own.items()}
+        groups: dict[str, Any] = {name: kind for name, kind in kinds.items() if is_dataclass(kind)}
+        offered = [option for name, each in own.items() for option in (_options(groups[name]) if name in groups else [each])]
+        known = {each.name for each in offered}
+        common = {name: kind for name, kind in _OUTPUTS.items() if name not in known and (name != "report" or name in files)}
+        offered += [Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=kind) for name, kind in common.items()]
+
+        @wraps(function)
+        def run(*_: _Given.args, **options: _Given.kwargs) -> None:
+            given: dict[str, Any] = {**options}
+            outputs = {name: given[name] for name in ("json", "xlsx", *files)}
+            read = [path for name, each in given.items() if name not in outputs and name != "csv" for path in _paths(each)]
+            require_writable([(f"--{name}", target) for name, target in outputs.items()], read)
+            made = {name: kind(**{each.name: given[each.name] for each in _options(kind)}) for name, kind in groups.items()}
+            opened = {name: each.open() for name, each in made.items() if isinstance(each, DesignOptions)}
+            called: Any = function
+            found = called(**{name: ({**made, **given} | opened)[name] for name in own})
+            write_answer(function.__name__.replace("_", "-"), found, outputs, given["csv"])
+
+        vars(run)["__signature__"] = Signature(offered)
+        run.__annotations__ = {each.name: each.annotation for each in offered}
+        return run
+
+    return decorate
+
+
+def _options(kind: type) -> list[Parameter]:
+    """The fields of a dataclass that are annotated as options."""
+    hints = get_type_hints(kind, include_extras=True)
+    defaults = {each.name: Parameter.empty if each.default is MISSING else each.default for each in fields(kind)}
+    return [
+        Parameter(name, Parameter.KEYWORD_ONLY, default=value, annotation=hints[name])
+        for name, value in defaults.items()
+        if get_origin(hints[name]) is Annotated
+    ]
+
+
+def _paths(given: Any) -> list[Path]:
+    """The files among the values of an option."""
+    return [each for each in (given if isinstance(given, list | tuple) else [given]) if isinstance(each, Path)]
+
+
+def write_answer(kind: str, found: CommandResult, outputs: Mapping[str, Any], csv: Path | None) -> None:
+    """Write what is asked for of `json`, `xlsx` and `report` among the outputs, by name, and `csv`; show tables unless one is stdout.
+
+    `kind` is that of the JSON document.
+    """
+    json, xlsx, report = (outputs.get(name) for name in ("json", "xlsx", "report"))
+    if report is not None and found.report is not None:
+        save(report, found.report(), "--report")
+    write_csv(csv, kind, found.body)
+    write_workbook(xlsx, found.body, lambda: envelope(kind, found.mechanism, found.model, {}, found.warnings))
     if json is not None:
-        write(json, as_text(envelope(kind, mechanism, model, body(), warnings)) + "\n", "--json")
+        write(json, as_text(envelope(kind, found.mechanism, found.model, found.body(), found.warnings)) + "\n", "--json")
         if json == STDOUT:
             return
         announce(f"Wrote {json}")
-    if STDOUT in map(str, (*beside, xlsx)):
-        for each in (*(() if mechanism is None else caveats(mechanism).warnings), *warnings):
+    if STDOUT in map(str, outputs.values()):
+        for each in (*(() if found.mechanism is None else caveats(found.mechanism).warnings), *found.warnings):
             print_warning(str(each))
         return
-    show((*list_caveats(kind, mechanism, warnings), *tables()))
+    show((*list_caveats(kind, found.mechanism, found.warnings), *found.tables()))
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from flexstage.analysis.complete import felt, read
@@ -15,9 +15,22 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
+from flexstage.show.command.options import Changes, Design
 from flexstage.show.command.output import require_writable
 from flexstage.show.command.terminal import print_note
 from flexstage.spatial.frame import COMPONENTS
+
+
+@dataclass(frozen=True)
+class DesignOptions:
+    """The design file of a command, and the changes of its values."""
+
+    design: Design
+    changes: Changes = None
+
+    def open(self) -> Mechanism:
+        """The description with its changes. Raises `DesignError` with all findings."""
+        return open_design(self.design, self.changes)
 
 
 def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Sequence[tuple[str, str | Path | None]] = ()) -> Mechanism:
@@ -25,7 +38,7 @@ def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Seque
 
     Raises `DesignError` with all findings.
     """
-    require_writable(outputs, path)
+    require_writable(outputs, [path])
     return change(load(path), changes or ())
 
 

@@ -51,10 +51,10 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 class Place:
     """Where a stage is to be looked at, in the words of the command line; `bool()` says whether anywhere but as drawn."""
 
-    at: Sequence[str] = ()
-    load: Sequence[str] = ()
-    fixed: Sequence[str] = ()
-    temperature: str | None = None
+    at: At = None
+    load: Load = None
+    fixed: Fixed = None
+    temperature: Temperature = None
 
     def __bool__(self) -> bool:
         return bool(self.at or self.load or self.fixed or self.temperature)
@@ -67,7 +67,7 @@ class Place:
     @property
     def locked(self) -> tuple[str, ...]:
         """The fixed coordinates. Raises `DesignError` for a value among them, and for what is given twice."""
-        fixed = tuple(name.strip() for name in self.fixed)
+        fixed = tuple(name.strip() for name in self.fixed or ())
         require(
             Finding(f"--fixed {name}", "a fixed coordinate has no value here", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
             for name in fixed
@@ -78,18 +78,13 @@ class Place:
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
         """Where the stage is brought, in SI units."""
-        return _values(self.at, "--at", lambda name: quantity_of(model, name))
+        return _values(self.at or (), "--at", lambda name: quantity_of(model, name))
 
     @property
     def options(self) -> str:
         """The options that were given."""
         given = {"--at": self.at, "--load": self.load, "--fixed": self.fixed, "--temperature": self.temperature}
         return ", ".join(option for option, value in given.items() if value)
-
-
-def place(at: Sequence[str] | None, load: Sequence[str] | None, fixed: Sequence[str] | None, temperature: str | None) -> Place:
-    """What the options of a command say."""
-    return Place(at or (), load or (), fixed or (), temperature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +139,7 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
         raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
     there = operating_points.operating_point(
-        mechanism, asked.brought(known), loads=loads_of(known, asked.load), fixed=asked.locked, temperature=asked.warmth
+        mechanism, asked.brought(known), loads=loads_of(known, asked.load or ()), fixed=asked.locked, temperature=asked.warmth
     )
     return Footing(mechanism, model, there)
 

@@ -74,22 +74,13 @@ def announce(text: str) -> None:
         pending.texts.append(text)
 
 
-def require_writable(wanted: Sequence[tuple[str, str | Path | None]], design: Path | None = None, records: Iterable[Path] = ()) -> None:
-    """Raise a `DesignError` of all that keeps the outputs, pairs of an option and its path, from being written.
-
-    They must not overwrite what is read: the `design` (or the study) and `records`.
-    """
-    read = {_real_path(path) for path in records}
-    clashes = [
-        Finding(option, f"{target} is a record that is read", "Choose another file")
-        for option, target in wanted
-        if target is not None and str(target) != STDOUT and _real_path(Path(target)) in read
-    ]
-    require([*_problems(wanted, design), *clashes])
+def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iterable[Path] = ()) -> None:
+    """Refuse outputs, pairs of an option and its path, that cannot be written or are a file that is `read`."""
+    require(_problems(wanted, read))
 
 
-def _problems(wanted: Iterable[tuple[str, str | Path | None]], design: Path | None) -> Iterator[Finding]:
-    taken: dict[Path, str] = {} if design is None else {_real_path(design): "the design file"}
+def _problems(wanted: Iterable[tuple[str, str | Path | None]], read: Iterable[Path]) -> Iterator[Finding]:
+    taken = {_real_path(path): "read by this command" for path in read}
     spoken: str | None = None
     for option, target in wanted:
         if target is not None and str(target) == STDOUT:
@@ -100,11 +91,11 @@ def _problems(wanted: Iterable[tuple[str, str | Path | None]], design: Path | No
             continue
         path = Path(target)
         if (owner := taken.get(_real_path(path))) is not None:
-            yield Finding(option, f"{path} is {owner} too", "Choose another file")
+            yield Finding(option, f"{path} is {owner}", "Choose another file")
         elif (problem := _problem(path, _file_problem)) is not None:
             yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
         else:
-            taken[_real_path(path)] = f"the output of {option}"
+            taken[_real_path(path)] = f"the output of {option} too"
 
 
 def check_folder(folder: Path | None) -> Path | None:

@@ -28,10 +28,9 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.parts.leaf import Leaf, LeafEnds
 from flexstage.parts.part import inner
-from flexstage.show.command.answer import answer, print_missing
-from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, order_option, output_option, text_option, word_option
-from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.answer import CommandResult, command, print_missing
+from flexstage.show.command.options import Design, Report, order_option, output_option, text_option, word_option
+from flexstage.show.command.output import save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
 from flexstage.show.table import Table
@@ -90,7 +89,6 @@ Memory: TypeAlias = Annotated[
     str | None,
     text_option("--memory", "SIZE", 'Memory to plan with, e.g. "8 GB". Default: 90 % of what the machine has left.'),
 ]
-_DEFAULT_ACCURACY = "1 %"
 
 
 @dataclass(frozen=True)
@@ -107,6 +105,24 @@ class _Request:
 
 
 @dataclass(frozen=True)
+class SolidOptions:
+    """How exact a solid study is to be, and what it may take."""
+
+    accuracy: Accuracy = "1 %"
+    order: Order = None
+    memory: Memory = None
+
+    @property
+    def request(self) -> _Request:
+        """The same in numbers. Raises `DesignError` for what is out of range."""
+        share = parse(self.accuracy, RATIO, where="--accuracy")
+        if not 1e-6 <= share < 1.0:
+            what = f"{self.accuracy} is no relative error to ask for"
+            raise refuse("--accuracy", what, 'Give one between 0.0001 % and 100 %, e.g. "1 %"')
+        return _Request(Resolution(share, self.order), _size(self.memory))
+
+
+@dataclass(frozen=True)
 class _Result:
     """Results of the solid model in one document, their tables; headline, sections and motions of a report; warnings about them."""
 
@@ -118,67 +134,48 @@ class _Result:
     motions: Callable[[], tuple[Motion, ...]] = tuple
 
 
-def solid(  # noqa: PLR0913 (its options)
-    design: Design,
+@command("report")
+def solid(
+    mechanism: Mechanism,
     *,
     scope: Annotated[
         Scope, word_option("--scope", Scope, "Scope: each distinct hinge, each distinct unit, or the whole stage.")
     ] = Scope.STAGE,
-    accuracy: Accuracy = _DEFAULT_ACCURACY,
-    order: Order = None,
-    memory: Memory = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-    report: Report = None,
-) -> None:
+    options: SolidOptions,
+) -> CommandResult:
     """Read a stage as elastic solids, by finite elements.
 
     hinge: the 6x6 of every hinge. unit: stiffness, gain, lost motion and stress of every unit. stage: stiffness, modes and stress.
 
     What was reduced once is kept and not computed again.
     """
-    asked = _request(accuracy, order, memory)
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
+    asked = options.request
     if scope is Scope.STAGE:
         require_standing(mechanism)
     with progress_bar() as shown, Pool() as pool:
         found = _STUDIES[scope](mechanism, replace(asked, pool=pool), shown)
-    if report is not None:
-        save(report, reports.solid_report(mechanism, found.said, found.sections(), found.warnings, found.motions()), "--report")
-    answer(
-        "solid",
+    return CommandResult(
         mechanism,
         lambda: SideBySide(({"what": scope.value}, *found.results)),
         found.tables,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
+        lambda: reports.solid_report(mechanism, found.said, found.sections(), found.warnings, found.motions()),
         warnings=(*free_end_warnings(mechanism), *found.warnings),
-        beside=(report,),
     )
 
 
-def verify(  # noqa: PLR0913 (its options)
-    design: Design,
+@command("report")
+def verify(
+    mechanism: Mechanism,
     *,
-    accuracy: Accuracy = _DEFAULT_ACCURACY,
-    order: Order = None,
-    memory: Memory = None,
-    changes: Changes = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
+    options: SolidOptions,
     report: Report = None,
-) -> None:
+) -> CommandResult:
     """Compare theory with finite elements: which to trust?
 
     Hinges, units and the whole stage: the paper's springs, the lumped model, the lumped model with calibrated hinges, and FEA with its
     own error. Rows that calibrated parts touch are not independent of FEA.
     """
-    asked = _request(accuracy, order, memory)
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
+    asked = options.request
     known = recall(mechanism, asked.resolution, Cache()) if report is None and asked.memory is None else None
     if known is None:
         require_standing(mechanism)
@@ -189,25 +186,17 @@ def verify(  # noqa: PLR0913 (its options)
     else:
         print_note("\n".join(("to do: nothing, the verification is in the cache.", *known.notes)))
         found, warnings = known.of(mechanism), known.warnings
-    if report is not None:
+
+    def page() -> str:
         units = None if found.units is None else pages.unit_section(found.units)
         stage = None if found.stage is None else pages.stage_solid_section(found.stage)
         pairs, beside = ({}, None) if found.stage is None else pages.paired_with_theory(mechanism, found.stage.result)
         more = () if found.stage is None else pages.solid_motions(mechanism, found.stage.result, pairs)
         sections = iter([pages.verification_section(found), beside, pages.hinge_section(found.hinges), units, stage])
-        save(report, reports.solid_report(mechanism, pages.verification_headline(found), sections, warnings, more), "--report")
+        return reports.solid_report(mechanism, pages.verification_headline(found), sections, warnings, more)
+
     print_missing(found.reasons)
-    answer(
-        "verify",
-        mechanism,
-        lambda: found,
-        lambda: _verification_tables(found),
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        warnings=warnings,
-        beside=(report,),
-    )
+    return CommandResult(mechanism, lambda: found, lambda: _verification_tables(found), page, warnings=warnings)
 
 
 def _verification_warnings(found: verification.Verification, asked: _Request) -> tuple[Finding, ...]:
@@ -257,37 +246,25 @@ def _tell_verdicts(rows: tuple[verification.Row, ...]) -> None:
         print_note(f"{name}: {verification.verdict(group)}")
 
 
+@command("output")
 def calibrate(
     design: Design,
     *,
     output: Annotated[Path, output_option("STAGE.TOML", "Design file to write.")],
-    accuracy: Accuracy = _DEFAULT_ACCURACY,
-    order: Order = None,
-    memory: Memory = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+    options: SolidOptions,
+) -> CommandResult:
     """Give hinges their 6x6 from finite elements.
 
     The lumped model of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
     """
-    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx)], design)
-    asked = _request(accuracy, order, memory)
+    asked = options.request
     text = read_text(design)
     mechanism = loads(text, where=str(design))
     with progress_bar() as shown:
         found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
     save(output, found.text, "--output")
     warnings, tables = _inexact_hinges(found.hinges), [calibration_table(found)]
-    answer("calibrate", mechanism, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, warnings=warnings, beside=(output,))
-
-
-def _request(accuracy: str, order: int | None, memory: str | None) -> _Request:
-    share = parse(accuracy, RATIO, where="--accuracy")
-    if not 1e-6 <= share < 1.0:
-        raise refuse("--accuracy", f"{accuracy} is no relative error to ask for", 'Give one between 0.0001 % and 100 %, e.g. "1 %"')
-    return _Request(Resolution(share, order), _size(memory))
+    return CommandResult(mechanism, lambda: found, lambda: tables, warnings=warnings)
 
 
 def _notice(finding: Finding) -> None:

@@ -8,8 +8,8 @@ from typing import Annotated
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.models.theory import Model
 from flexstage.show.command import options
-from flexstage.show.command.answer import answer
-from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.output import save
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note
 from flexstage.studies.optimisation.cost import search_cost
@@ -26,22 +26,18 @@ from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
 
 
+@command("output", "report")
 def optimise(
     study: options.Study,
     *,
     output: Annotated[Path | None, options.output_option("STAGE.TOML", "Design file to write.")] = None,
-    report: options.Report = None,
-    json: options.Json = None,
-    csv: options.Csv = None,
-    xlsx: options.Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Find the best design within ranges and limits.
 
     By exact derivatives, from several starts: what binds, what it costs, values that can be made. Two objectives: a front.
 
     Limits that contradict each other are named (exit code 2). Interrupted, it ends with the best design so far.
     """
-    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], study)
     asked = load_study(study)
     definition = load_optimisation(asked, str(study))
     source = design_path(asked, study.parent)
@@ -61,19 +57,13 @@ def optimise(
             save(output, write_optimum(design_text(asked, study.parent), asked, definition, values, where=str(source or study)), "--output")
     else:
         warnings = loaded_findings(asked)
-    if report is not None:
-        save(report, optimise_report(found) if isinstance(found, Optimum) else front_report(found), "--report")
-    answer(
-        "optimise",
+    return CommandResult(
         asked.design,
         lambda: found,
         lambda: optimise_tables(found) if isinstance(found, Optimum) else front_tables(found),
-        model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        warnings=warnings,
-        beside=(output, report),
+        lambda: optimise_report(found) if isinstance(found, Optimum) else front_report(found),
+        Model.LUMPED,
+        warnings,
     )
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, Xlsx, output_option
-from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.options import Resume, Scheduler, Study, Workers, output_option
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note
 from flexstage.studies.sweeps.effects import effects
@@ -24,25 +24,21 @@ from flexstage.studies.sweeps.show.report import sweep_report
 from flexstage.studies.sweeps.show.tables import study_tables
 
 
-def sweep(  # noqa: PLR0913 (its options)
+@command("output", "report")
+def sweep(
     study: Study,
     *,
     output: Annotated[Path, output_option("RESULTS.H5", "Results file to write: every design.")],
     resume: Resume = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
-    report: Report = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Compute many designs; show what varies with what.
 
     Grid, Latin hypercube, Sobol sequence, or Saltelli's plan for Sobol indices, as the study's file says.
 
     Interrupted at any moment, --resume goes on without loss or repetition.
     """
-    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], study)
     asked = load_study(study)
     with _resumable(output), progress_bar() as shown:
         results = run_sweep(
@@ -53,20 +49,8 @@ def sweep(  # noqa: PLR0913 (its options)
             lambda cost: print_note(str(cost)),
         )
     found = Sweep(asked, results, effects(results, asked.plan))
-    if report is not None:
-        save(report, sweep_report(found), "--report")
-    answer(
-        "sweep",
-        asked.design,
-        lambda: found,
-        lambda: study_tables(found),
-        model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        warnings=loaded_findings(asked),
-        beside=(report,),
-    )
+    page, warnings = partial(sweep_report, found), loaded_findings(asked)
+    return CommandResult(asked.design, lambda: found, lambda: study_tables(found), page, Model.LUMPED, warnings)
 
 
 @contextmanager

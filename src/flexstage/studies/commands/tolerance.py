@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, Xlsx, output_option
-from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.options import Resume, Scheduler, Study, Workers, output_option
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note
 from flexstage.studies.sweeps.execution.run import Run
@@ -20,25 +20,21 @@ from flexstage.studies.tolerances.show.report import tolerance_report
 from flexstage.studies.tolerances.show.tables import tolerance_tables
 
 
-def tolerance(  # noqa: PLR0913 (its options)
+@command("output", "report")
+def tolerance(
     study: Study,
     *,
     output: Annotated[Path | None, output_option("RESULTS.H5", "Results file to write: every copy.")] = None,
     resume: Resume = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
-    report: Report = None,
-    json: Json = None,
-    csv: Csv = None,
-    xlsx: Xlsx = None,
-) -> None:
+) -> CommandResult:
     """Scatter dimensions and materials: yield, allowances.
 
     The study's file says in [scatter] what deviates, and how far.
 
     Told are distributions, the yield line by line and together, what does it, what each dimension may deviate, and crosstalk.
     """
-    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], study)
     if resume and output is None:
         raise refuse("--resume", "no results file is named", "Name it with --output")
     asked = load_tolerance(study)
@@ -50,17 +46,5 @@ def tolerance(  # noqa: PLR0913 (its options)
             lambda done, of: shown.share(f"{done} of {of} copies", done / max(of, 1)),
             lambda cost: print_note(str(cost)),
         )
-    if report is not None:
-        save(report, tolerance_report(found), "--report")
-    answer(
-        "tolerance",
-        found.study.design,
-        lambda: found,
-        lambda: tolerance_tables(found),
-        model=Model.LUMPED,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
-        warnings=loaded_findings(found.study),
-        beside=(report,),
-    )
+    page, warnings = partial(tolerance_report, found), loaded_findings(found.study)
+    return CommandResult(found.study.design, lambda: found, lambda: tolerance_tables(found), page, Model.LUMPED, warnings)
