@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Annotated, Any, TypeAlias, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
-from flexstage.base.units.quantity import ACCELERATION_NOISE, CURRENT, FREQUENCY, NOISE_DENSITY, RATIO, RESISTANCE, VELOCITY_NOISE
+from flexstage.base.units.quantity import ACCELERATION_NOISE, NOISE_DENSITY, RATIO, VELOCITY_NOISE
 from flexstage.control.study import setup as forms
 from flexstage.control.study.choices import Compensation, Criterion, Following
 from flexstage.show.command.options import text_option
-from flexstage.show.command.values import Values, first_that_parses, motions
+from flexstage.show.command.values import first_that_parses, motions
 
 Setup: TypeAlias = Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file of the loop.")]
 
@@ -23,19 +23,6 @@ _NOTHING = "none"
 def override(record: _Record, given: Mapping[str, Any]) -> _Record:
     """The record with the values that are given, others than `None`."""
     return replace(record, **{name: value for name, value in given.items() if value is not None})  # type: ignore[type-var]
-
-
-def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
-    """What `--amplifier` says, each by its unit."""
-    known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
-    found: dict[str, float] = {}
-    for text in texts:
-        if (fit := first_that_parses(text, known)) is None:
-            what = f'found "{text}", which is no frequency, resistance or current'
-            values.findings.append(Finding("--amplifier", what, 'Write for example "500 Hz", "50 ohm" or "0.2 A"'))
-        else:
-            found[fit[0]] = fit[1]
-    return found
 
 
 def follow_setup(given: forms.FollowSetup | None, method: Following) -> forms.FollowSetup:

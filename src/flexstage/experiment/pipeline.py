@@ -121,7 +121,7 @@ def identification(test: Measurement, search: Search = _DEFAULT, told: Told | No
 def _without_inputs(test: Measurement, search: Search, tell: Tell | None) -> Identified:
     if isinstance(test, Responses):
         what = f"the test is of responses to inputs, and {search.excitation.value} is said to have moved the stage"
-        raise refuse(test.source or test.name or "responses", what, "Leave the excitation out, or give records of outputs")
+        raise refuse(test.where, what, "Leave the excitation out, or give records of outputs")
     find = identify_floor if search.excitation is Excitation.FLOOR else identify_decay
     return find(test, search, tell)
 

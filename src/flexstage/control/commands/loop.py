@@ -22,7 +22,6 @@ from flexstage.control.export.code.precision import Precision
 from flexstage.control.loop_files import file_findings, require_names, write_export, write_hardware, written_files
 from flexstage.control.loop_options import (
     Setup,
-    amplifier_values,
     compensation,
     floor_setup,
     follow_setup,
@@ -65,7 +64,7 @@ from flexstage.show.command.options import (
 )
 from flexstage.show.command.output import announce, require_writable, write
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.values import Values
+from flexstage.show.command.values import Values, amplifier_values
 from flexstage.show.table import Table
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from flexstage.base.number import Array
 from flexstage.control.hysteresis.models.inverse import inverse_findings
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.models.protocol import Hysteresis
-from flexstage.control.plant_models.electronics import Amplifier
+from flexstage.control.plant_models.electronics import Amplifier, Sensor
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
 from flexstage.control.systems.system import System, select
 from flexstage.models.linear.model import Channel
@@ -149,9 +149,10 @@ def machine(
     """
     if given.hardware.step is None:
         require([Finding("loop", "it is continuous, and time is simulated in samples", "State the sampling rate")])
-    loop, power = given.coordinates, [given.hardware.amplifiers.get(name) for name in given.actuators]
-    senses = [given.hardware.sensors.get(name) for name in given.gauges]
-    nothing = np.full(len(power), np.nan)
+    loop, nothing = given.coordinates, np.full(len(given.actuators), np.nan)
+    power = [given.hardware.amplifiers.get(name, Amplifier()) for name in given.actuators]
+    senses = [given.hardware.sensors.get(name, Sensor()) for name in given.gauges]
+    low, high, slew, step = np.array([(each.low, each.high, each.slew, each.step) for each in power]).T
     plant = zero_order_hold(given)
     readings = tuple(f"gap.{name}" for name in given.gauges)
     kept = plant if motions is None else select(plant, plant.input_names, (*readings, *motions))
@@ -163,23 +164,23 @@ def machine(
         gauges=given.gauges,
         pose=loop.pose,
         amplifiers=Amplifiers(
-            low=np.array([-np.inf if each is None else each.low for each in power]),
-            high=np.array([np.inf if each is None else each.high for each in power]),
-            slew=np.array([np.inf if each is None else each.slew for each in power]),
-            step=np.array([0.0 if each is None else each.step for each in power]),
+            low=low,
+            high=high,
+            slew=slew,
+            step=step,
             gain=nothing if electric is None else np.asarray(electric.gain, dtype=float),
             bias=nothing if electric is None else np.asarray(electric.bias, dtype=float),
         ),
-        resolution=np.array([0.0 if each is None else each.resolution for each in senses]),
+        resolution=np.array([each.resolution for each in senses]),
         hysteresis=hysteresis,
         compensation=compensation,
-        half_range=np.array([np.inf if each is None else each.half_range for each in senses]),
+        half_range=np.array([each.half_range for each in senses]),
         relief=None if hysteresis is None else _relief(power, given.hardware.step or np.nan),
     )
 
 
-def _relief(powers: Sequence[Amplifier | None], step: float) -> Relief | None:
-    drives = [None if each is None else each.charge for each in powers]
+def _relief(powers: Sequence[Amplifier], step: float) -> Relief | None:
+    drives = [each.charge for each in powers]
     if all(each is None for each in drives):
         return None
     left = np.array([1.0 if each is None else each.residual_hysteresis for each in drives])
@@ -191,15 +192,21 @@ def _findings(given: Machine) -> Iterator[Finding]:
     plant, controller = given.plant, given.controller
     if plant.step is None or controller.step is None or abs(controller.step / plant.step - 1.0) > 1e-9:
         yield Finding("loop", f"the plant's step is {plant.step} s, the controller's {controller.step} s", "Sample both alike")
-    yield from _missing("plant", plant.input_names, given.actuators)
-    yield from _missing("plant", plant.output_names, given.readings)
-    yield from _missing("controller", controller.output_names, given.commands)
+    missing = [
+        *_missing("plant", plant.input_names, given.actuators),
+        *_missing("plant", plant.output_names, given.readings),
+        *_missing("controller", controller.output_names, given.commands),
+    ]
+    yield from missing
+    if not missing and np.any(select(plant, given.actuators, given.readings).D):  # it would have to be known before it is computed
+        yield Finding("plant", "its readings feel the stroke of their own sample", "Give the loop a delay, or the gauges a bandwidth")
+    if np.any(controller.D[:, [name.startswith("applied.") for name in controller.input_names]]):
+        yield Finding("controller", "its command depends on what is applied of it in the same sample", "Feed it to the states only")
     known = [f"{kind}.{name}" for kind in ("error", "reference", "pose") for name in given.names]
     known += [f"applied.{name}" for name in given.actuators]
     for name in controller.input_names:
         if name not in known:
             yield Finding(name, "a controller has no such input", suggest_nearest(name, known))
-    yield from _direct(given)
     yield from _electric(given)
 
 
@@ -207,18 +214,6 @@ def _missing(kind: str, known: tuple[str, ...], wanted: tuple[str, ...]) -> Iter
     for name in wanted:
         if name not in known:
             yield Finding(f"{kind}: {name}", "there is no channel of this name", suggest_nearest(name, known))
-
-
-def _direct(given: Machine) -> Iterator[Finding]:
-    """What would have to be known before it is computed."""
-    plant, controller = given.plant, given.controller
-    rows = [index for index, name in enumerate(plant.output_names) if name in given.readings]
-    columns = [index for index, name in enumerate(plant.input_names) if name in given.actuators]
-    if np.any(plant.D[np.ix_(rows, columns)]):
-        yield Finding("plant", "its readings feel the stroke of their own sample", "Give the loop a delay, or the gauges a bandwidth")
-    applied = [index for index, name in enumerate(controller.input_names) if name.startswith("applied.")]
-    if np.any(controller.D[:, applied]):
-        yield Finding("controller", "its command depends on what is applied of it in the same sample", "Feed it to the states only")
 
 
 def _electric(given: Machine) -> Iterator[Finding]:

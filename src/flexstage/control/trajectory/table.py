@@ -79,7 +79,7 @@ def from_record(record: Record, point: str = PLATFORM) -> Table:
     >>> asked.coordinates, asked.at(np.array([0.25])).tolist()
     (('x',), [[1.5e-06]])
     """
-    where = record.source or record.name or "record"
+    where = record.where
     named = tuple(name for name in record.names if name in COMPONENTS)
     if not named:
         raise refuse(where, f"no column is a coordinate: {', '.join(record.names)}", f"Name columns {', '.join(COMPONENTS)}")

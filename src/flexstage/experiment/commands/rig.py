@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, TIME, VOLTAGE, Quantity
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, TIME, VOLTAGE
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
@@ -34,7 +34,7 @@ from flexstage.show.command.options import (
 )
 from flexstage.show.command.output import announce
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.values import Values, first_that_parses
+from flexstage.show.command.values import Values, amplifier_values, first_that_parses
 
 
 def rig(  # noqa: PLR0913  a test has that many knobs
@@ -82,7 +82,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         rate=values.value("--rate", rate, FREQUENCY),
         seed=seed or 0,
         drive=_drive(values, drive_rms, band, actuators),
-        amplifier=_amplifier(values, amplifier),
+        amplifier=Amplifier(**amplifier_values(values, amplifier or ())),
         filter=AntiAlias(filter_order, values.value("--filter-corner", filter_corner, FREQUENCY)),
         sensing=Sensing(
             values.value("--gauge-noise", gauge_noise, NOISE_DENSITY),
@@ -103,30 +103,13 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 
 
 def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, actuators: list[str] | None) -> NoiseDrive:
-    quantity, amount = _of_one(values, "--drive-rms", drive_rms, (DISPLACEMENT, VOLTAGE)) or (None, None)
+    amount = None if drive_rms is None else first_that_parses(drive_rms, {"stroke": DISPLACEMENT, "voltage": VOLTAGE})
+    if drive_rms is not None and amount is None:
+        what = f'found "{drive_rms}", which is no displacement or voltage'
+        values.findings.append(Finding("--drive-rms", what, 'Write for example "1 um" or "5 V"'))
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(
-        stroke=amount if quantity is DISPLACEMENT else None,
-        voltage=amount if quantity is VOLTAGE else None,
+        **dict([amount] if amount else []),
         band=None if ends is None or ends[0] is None or ends[1] is None else (ends[0], ends[1]),
         actuators=tuple(actuators) if actuators else None,
     )
-
-
-def _amplifier(values: Values, texts: list[str] | None) -> Amplifier:
-    found = [each for text in texts or () if (each := _of_one(values, "--amplifier", text, (FREQUENCY, RESISTANCE, CURRENT))) is not None]
-    known = {quantity.name: value for quantity, value in found}
-    return Amplifier(bandwidth=known.get("frequency"), resistance=known.get("resistance"), current=known.get("current"))
-
-
-def _of_one(values: Values, option: str, text: str | None, quantities: tuple[Quantity, ...]) -> tuple[Quantity, float] | None:
-    """The quantity that a text is of, with its value; nothing where it is absent or, as is noted, of none."""
-    if text is None:
-        return None
-    known = {quantity.name: quantity for quantity in quantities}
-    if (fit := first_that_parses(text, known)) is not None:
-        return known[fit[0]], fit[1]
-    examples = " or ".join(f'"{quantity.example}"' for quantity in quantities)
-    nouns = ", ".join(quantity.noun for quantity in quantities)
-    values.findings.append(Finding(option, f'found "{text}", which is none of: {nouns}', f"Write for example {examples}"))
-    return None

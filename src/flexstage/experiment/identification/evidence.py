@@ -131,7 +131,7 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
 
     weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
     weights = weights * np.sqrt(drive / np.max(drive))[:, None] if is_single else weights
-    source = records[0].source or records[0].name or "record"
+    source = records[0].where
     return Evidence(
         where=source,
         responses=replace(responses, source=source),
@@ -243,7 +243,7 @@ def _of_responses(known: Responses) -> Evidence:
     step, even = float(np.median(steps)), is_even(known.frequencies)
     window = next((each for each in Window if known.window.lower().startswith(each.value)), None)
     return Evidence(
-        where=known.source or known.name or "responses",
+        where=known.where,
         responses=known,
         weights=1.0 / np.sqrt(density),
         lines=lines,
@@ -293,7 +293,7 @@ _INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.74, Windo
 
 
 def _response_findings(known: Responses, steps: Array) -> list[Finding]:
-    where = known.source or known.name or "responses"
+    where = known.where
     if len(steps) < 15:
         return [Finding(where, f"there are {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
     if not np.all(np.isfinite(known.values)):
@@ -326,7 +326,7 @@ def _findings(records: tuple[Record, ...]) -> list[Finding]:
     first = records[0]
     found: list[Finding] = []
     for record in records:
-        where = record.source or record.name or "record"
+        where = record.where
         if not record.inputs:
             found.append(Finding(where, "no channel is an input", "Say which channels are inputs"))
         if not record.outputs:

@@ -93,7 +93,7 @@ def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examin
     ['record: S1: it is zero throughout. Check cable and range, or accept "dead" to leave it out.']
     """
     found = gather(record)
-    where = record.source or record.name or "record"
+    where = record.where
     numbers = dict(zip(record.names, found.channels, strict=True))
     faults = [
         *_samples(record, found, where),
@@ -124,7 +124,7 @@ def usable_record(
         raise DesignError(refused)
     dropped = found.channels({FaultTolerance.DEAD, FaultTolerance.DEPENDENT, FaultTolerance.NAMES})
     kept = record.select([name for name in record.names if name not in dropped]) if dropped else record
-    where = record.source or record.name or "record"
+    where = record.where
     left = [fault.finding for fault in _roles(kept, RecordRequirements(unrecorded=requirements.unrecorded), where)]
     if left:
         raise DesignError(left)
@@ -140,7 +140,7 @@ def responses_findings(responses: Responses, requirements: RecordRequirements = 
     >>> [fault.finding.what for fault in responses_findings(one, RecordRequirements(highest=5.0))]
     ['its responses end at 2 Hz, the highest mode is at 5 Hz']
     """
-    where = responses.source or responses.name or "responses"
+    where = responses.where
     faults = [
         *_units((*responses.outputs, *responses.inputs), where),
         *_name_faults(responses.inputs, responses.outputs, requirements, where),

@@ -116,8 +116,13 @@ class Record(InNotebook, CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        where = self.source or self.name or "record"
+        where = self.where
         require([*_rate_findings(where, self.rate), *name_findings(where, self.channels)])
+
+    @property
+    def where(self) -> str:
+        """What messages call it: the file, else the name."""
+        return self.source or self.name or "record"
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
@@ -157,7 +162,7 @@ class Record(InNotebook, CheckedFields):
     def columns(self, names: Iterable[str]) -> tuple[int, ...]:
         """Numbers of the named channels; raises `DesignError` for every name that is none's."""
         chosen, known = tuple(names), self.names
-        where = self.source or self.name or "record"
+        where = self.where
         require(
             Finding(f"{where}: {name}", "the record has no channel of this name", suggest_nearest(name, known))
             for name in set(chosen) - set(known)
@@ -228,7 +233,7 @@ class Responses(InNotebook, CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        where = self.source or self.name or "responses"
+        where = self.where
         expected = (len(self.frequencies), len(self.outputs), len(self.inputs))
         shapes = {"values": self.values.shape} | ({} if self.coherence is None else {"coherence": self.coherence.shape})
         advice = "Give one value a frequency, output and input"
@@ -238,6 +243,11 @@ class Responses(InNotebook, CheckedFields):
             if shape != expected
         ]
         require([*name_findings(where, self.outputs), *name_findings(where, self.inputs), *wrong])
+
+    @property
+    def where(self) -> str:
+        """What messages call it: the file, else the name."""
+        return self.source or self.name or "responses"
 
     @property
     def kind(self) -> Annotated[str, VIEW]:

@@ -151,7 +151,7 @@ def independent_averages(averages: int, window: Array, hop: int) -> float:
 
 
 def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[Finding]:
-    where = record.source or record.name or "record"
+    where = record.where
     found = [] if outputs else [Finding(where, "no channel is an output", "Say which channels are outputs")]
     if size < 8:
         found.append(Finding(where, f"a segment has {size} samples", "Ask for segments of 8 samples or more"))

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from flexstage.analysis.dynamics.random_response import Rate, Spectrum
 from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
-from flexstage.base.units.quantity import ANGLE, DISPLACEMENT, Quantity
+from flexstage.base.units.quantity import ANGLE, CURRENT, DISPLACEMENT, FREQUENCY, RESISTANCE, Quantity
 from flexstage.base.units.unit import parse
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.port import ports
@@ -49,6 +49,19 @@ def first_that_parses(text: str, known: Mapping[str, Quantity]) -> tuple[str, fl
         except DesignError:
             continue
     return None
+
+
+def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
+    """What `--amplifier` says, each by its unit."""
+    known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
+    found: dict[str, float] = {}
+    for text in texts:
+        if (fit := first_that_parses(text, known)) is None:
+            what = f'found "{text}", which is no frequency, resistance or current'
+            values.findings.append(Finding("--amplifier", what, 'Write for example "500 Hz", "50 ohm" or "0.2 A"'))
+        else:
+            found[fit[0]] = fit[1]
+    return found
 
 
 def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:

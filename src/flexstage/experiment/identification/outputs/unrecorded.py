@@ -42,7 +42,7 @@ def identify_floor(records: Sequence[Record], search: Search, tell: Tell | None 
     resolution = BLOCKS / record.duration
     low = max(_LOWEST * resolution, search.band[0] if search.band else 0.0)
     high = min(_HIGHEST * record.rate, search.band[1] if search.band else np.inf)
-    where = record.source or record.name or "record"
+    where = record.where
     if low >= high:
         what = f"modes up to {high:.4g} Hz are asked for; the record shows them from {low:.4g} Hz on"
         require([Finding(where, what, "Ask for another band, or record longer")])
@@ -96,7 +96,7 @@ def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None 
     starts = [_largest(record) for record in records]
     size = min(record.length - start for record, start in zip(records, starts, strict=True))
     first = records[0]
-    where = first.source or first.name or "record"
+    where = first.where
     parts = [
         record.select([each.name for each in first.outputs]).values[start : start + size]
         for record, start in zip(records, starts, strict=True)
@@ -116,7 +116,7 @@ def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None 
 
 
 def _floor_findings(records: Sequence[Record]) -> list[Finding]:
-    where = records[0].source or records[0].name or "record"
+    where = records[0].where
     if len(records) > 1:
         return [
             Finding(
@@ -167,7 +167,7 @@ def _result(record: Record, modes: Sequence[Shaken], density: Responses, band: t
         band=band,
         noise=np.median(np.abs(density.values[inside, :, 0]) ** 2, axis=0),
         data_warnings=(_UNSCALED, *_none(modes)),
-        provenance=f"identified from outputs alone, in {record.source or record.name or 'record'}: covariance-driven stochastic subspace",
+        provenance=f"identified from outputs alone, in {record.where}: covariance-driven stochastic subspace",
     )
 
 
