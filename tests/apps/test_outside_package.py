@@ -133,7 +133,7 @@ def test_a_loop_takes_its_controller_and_its_amplifier(work, known):
 
 
 def test_its_compound_is_its_members(known):
-    assert "2 leaf" in known
+    assert "2 x leaf" in known
     assert known.count("no findings") >= 2
 
 

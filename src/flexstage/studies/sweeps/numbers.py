@@ -8,33 +8,29 @@ import numpy as np
 
 from flexstage.base.number import Array
 
-_BEYOND = 1e-9
-"""How much of a range is added at its ends, so that rounding leads no design out of it."""
-
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """P numbers at `addresses`: each is variable `of` (P,) times `factor` (P,); shared parts before overrides of them."""
+    """P numbers at `addresses`: `nominal` (P,) plus the variables (d,) by `matrix` (d, P); shared parts before overrides of them."""
 
     addresses: tuple[str, ...]
-    of: Array
-    factor: Array
+    nominal: Array
+    matrix: Array
 
     def at(self, values: Array) -> Array:
         """The numbers (n, P) of designs with `values` (n, d) of the variables.
 
-        >>> Numbers(("a", "b"), np.array([0, 0]), np.array([1.0, 3.0])).at(np.array([[2.0]])).tolist()
-        [[2.0, 6.0]]
+        >>> Numbers(("a", "b"), np.array([1.0, 0.0]), np.array([[1.0, 3.0]])).at(np.array([[2.0]])).tolist()
+        [[3.0, 6.0]]
         """
-        return values[..., self.of] * self.factor
+        return self.nominal + values @ self.matrix
 
     def ranges(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """Least and largest numbers (P,) for variables from `low` to `high` (d,).
+        """Least and largest numbers (P,) for variables from `low` to `high` (d,), each wherever it likes.
 
-        >>> low, high = Numbers(("a",), np.array([0]), np.array([-2.0])).ranges(np.array([1.0]), np.array([2.0]))
-        >>> low.round(6).tolist(), high.round(6).tolist()
-        ([-4.0], [-2.0])
+        >>> low, high = Numbers(("a",), np.array([5.0]), np.array([[-2.0]])).ranges(np.array([-1.0]), np.array([2.0]))
+        >>> low.tolist(), high.tolist()
+        ([1.0], [9.0])
         """
-        ends = np.stack([self.at(low), self.at(high)])
-        more = _BEYOND * np.ptp(ends, axis=0)
-        return ends.min(axis=0) - more, ends.max(axis=0) + more
+        reach = np.maximum(np.abs(low), np.abs(high)) @ np.abs(self.matrix)
+        return self.nominal - reach, self.nominal + reach

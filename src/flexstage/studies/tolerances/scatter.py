@@ -149,24 +149,7 @@ def _value(target: Target, values: Array) -> Array:
     return np.asarray(target.nominal + values[..., numbers] @ np.array(factors))
 
 
-@dataclass(frozen=True, eq=False)
-class Sums(Numbers):
-    """Numbers that several deviations add to: `nominal` (P,) plus deviations (d,) by `matrix` (d, P)."""
-
-    nominal: Array
-    matrix: Array
-
-    def at(self, values: Array) -> Array:
-        """The numbers (n, P) of copies with deviations (n, d)."""
-        return self.nominal + values @ self.matrix
-
-    def ranges(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """Least and largest numbers (P,) for deviations from `low` to `high` (d,), each wherever it likes."""
-        reach = np.maximum(np.abs(low), np.abs(high)) @ np.abs(self.matrix)
-        return self.nominal - reach, self.nominal + reach
-
-
-def sums(reached: tuple[Target, ...], count: int) -> Sums:
+def sums(reached: tuple[Target, ...], count: int) -> Numbers:
     """The numbers of a description that `count` deviations add to.
 
     >>> sums((Target("a", 1.0, ((0, 1.0), (1, 2.0))),), 2).at(np.array([[0.1, 0.2]])).round(9).tolist()
@@ -177,5 +160,4 @@ def sums(reached: tuple[Target, ...], count: int) -> Sums:
         for number, factor in target.factors:
             matrix[number, place] = factor
     nominal = np.array([target.nominal for target in reached])
-    nothing = np.zeros(0)
-    return Sums(tuple(target.address for target in reached), nothing, nothing, nominal, matrix)
+    return Numbers(tuple(target.address for target in reached), nominal, matrix)
