@@ -26,7 +26,7 @@ from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, column_table, make_table, matrix_table, number_cells, result_table
 from flexstage.show.viewer.animation import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 _MEANING = {
     Kind.LIMIT.value: "the load cannot pass it",
@@ -36,21 +36,19 @@ _MEANING = {
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
     """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
-    data = stroke_data(mechanism, path, found)
-    said = limits(found)
-    beyond = [each for each in said if each]
-    figure = stroke_figure(curves_of(found.along), _flags(said))
+    data, words_beyond = stroke_data(mechanism, path, found), limits(found)
+    beyond = [each for each in words_beyond if each]
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
-    sections = (
-        stage_section(data, said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."),
+    figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in words_beyond]))
+    sections = [
         section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
         caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
-        drawing_section(mechanism, data),
-    )
-    good = not beyond
-    text = words if good else f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}"
-    return _page(mechanism, "A stroke at large displacements", found.provenance, (Headline(to_typography(text), good), sections), data)
+    ]
+    text = f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}" if beyond else words
+    headline = Headline(to_typography(text), not beyond)
+    said = "Bodies and flexures lie where they are at large displacements. Red is beyond a limit."
+    return _page(mechanism, "A stroke at large displacements", found.provenance, headline, data, sections=sections, said=said)
 
 
 def stroke_tables(found: Stroke) -> list[Table]:
@@ -80,17 +78,14 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | No
     least = found.least
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
     data = buckling_data(mechanism, known, after) if known else still_data(mechanism)
-    moves = "The shape has no size of its own: it is drawn as large as the slider says."
-    sections = (
-        stage_section(data, said=moves if known else ""),
+    sections = [
         section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
         None if after is None else _beyond_section(after.stroke),
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
-        drawing_section(mechanism, data),
-    )
-    good = least is None or least.factor >= max(1.0, found.demand)
-    headline = Headline(to_typography(_buckling_text(found)), good)
-    return _page(mechanism, "What gives way", found.provenance, (headline, sections), data)
+    ]
+    headline = Headline(to_typography(_buckling_text(found)), least is None or least.factor >= max(1.0, found.demand))
+    said = "The shape has no size of its own: it is drawn as large as the slider says." if known else ""
+    return _page(mechanism, "What gives way", found.provenance, headline, data, sections=sections, said=said)
 
 
 def _buckling_facts(case: CaseFactor) -> Facts:
@@ -135,27 +130,24 @@ def shape_of(case: CaseFactor) -> Matrix:
 
 
 def _beyond_section(found: Stroke) -> Section | None:
-    picture = to_svg(stroke_figure(curves_of(found.along), _flags(limits(found))), "beyond", "What the stage does beyond what gives way")
-    shown = Picture(picture, "Equilibria from where the least gives way, by the factor on its load.")
+    figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in limits(found)]))
+    caption = "Equilibria from where the least gives way, by the factor on its load."
+    shown = Picture(to_svg(figure, "beyond", "What the stage does beyond what gives way"), caption)
     return section("Beyond", [shown, along_table("Along the factor", found.along)])
+
+
+_BENT = "Flexures lie as it bends them. Red is beyond a limit."
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     """What a misaligned copy does, as a page of HTML: the stage as it is bent, loads, frequencies and stress over the misalignment."""
-    data = misalign_data(mechanism, found)
-    sections = (
-        _misaligned_stage(data),
+    sections = [
         _misaligned_curves(found),
         caveat_section(mechanism, found.warnings),
         section("Point by point", misaligned_tables(found)),
-        drawing_section(mechanism, data),
-    )
+    ]
     headline = Headline(to_typography(_misaligned_text(found)), not bool(np.any(_beyond(found))))
-    return _page(mechanism, "A misalignment", found.provenance, (headline, sections), data)
-
-
-def _misaligned_stage(data: StageData) -> Section | None:
-    return stage_section(data, said="Flexures lie as it bends them. Red is beyond a limit.")
+    return _page(mechanism, "A misalignment", found.provenance, headline, misalign_data(mechanism, found), sections=sections, said=_BENT)
 
 
 def _misaligned_curves(found: Misaligned) -> Section | None:
@@ -174,7 +166,7 @@ def _misaligned_text(found: Misaligned) -> str:
 
 def misaligned_tables(found: Misaligned) -> list[Table]:
     """Where the stage gives way, what it does on the way to the last misalignment, and the loads in all flexures there."""
-    last = format_value(float(found.along.values[-1, 0]), "rad" if found.axis.startswith("r") else "m", 4)
+    last = format_value(float(found.along.values[-1, 0]), MOTION.unit(found.axis), 4)
     return [
         make_table("Misaligned", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
         along_table(f"Along {found.axis}", found.along),
@@ -185,17 +177,17 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
     """What each copy bears, as a page of HTML; the worst of them is played."""
     worst = found.worst
-    data = still_data(mechanism) if worst is None else misalign_data(mechanism, worst)
-    sections = (
-        stage_section(data) if worst is None else _misaligned_stage(data),
+    sections = [
         section("Copy by copy", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
         caveat_section(mechanism, found.warnings),
         None if worst is None else section("The worst, point by point", misaligned_tables(worst)),
-        drawing_section(mechanism, data),
-    )
+    ]
+    data, said = (still_data(mechanism), "") if worst is None else (misalign_data(mechanism, worst), _BENT)
     provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"
-    return _page(mechanism, "Misalignments", provenance, (Headline(to_typography(misalignments_text(found))), sections), data)
+    return _page(
+        mechanism, "Misalignments", provenance, Headline(to_typography(misalignments_text(found))), data, sections=sections, said=said
+    )
 
 
 def misalignments_text(found: Misalignments) -> str:
@@ -212,13 +204,13 @@ def misalignments_text(found: Misalignments) -> str:
 
 def critical_text(found: Misaligned) -> str:
     """At which misalignment the stage gives way, in words."""
-    size = format_value(found.followed, "rad" if found.axis.startswith("r") else "m", 4)
+    size = format_value(found.followed, MOTION.unit(found.axis), 4)
     return f"it is stable up to {size}, and not followed beyond" if np.isnan(found.critical) else f"it gives way at {size}"
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
     """What each copy bears along or about its axes: where it gives way, what forces it to a size, and the stress then."""
-    size = format_value(found.size, "rad" if found.critical.columns[0].startswith("r") else "m", 4)
+    size = format_value(found.size, MOTION.unit(found.critical.columns[0]), 4)
     alone = "Of one copy alone, in its own frame"
     return [
         column_table("Critical misalignment", found.critical, head="instance", notes=[f"{alone}. -: stable as far as it is followed."]),
@@ -230,12 +222,17 @@ def misalignment_tables(found: Misalignments) -> list[Table]:
     ]
 
 
-def _flags(said: tuple[str, ...]) -> Array:
-    return np.array([each != "" for each in said])
-
-
-def _page(mechanism: Mechanism, kind: str, provenance: str, told: tuple[Headline, tuple[Section | None, ...]], data: StageData) -> str:
-    headline, sections = told
+def _page(
+    mechanism: Mechanism,
+    kind: str,
+    provenance: str,
+    headline: Headline,
+    data: StageData,
+    *,
+    sections: Iterable[Section | None],
+    said: str = "",
+) -> str:
+    """A page that begins with the stage as it moves, `said` below it, and ends with its drawings."""
     origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", __version__))
     head = Head(mechanism.name or "stage", kind, origin, headline)
-    return page(head, sections, {"stage": data})
+    return page(head, [stage_section(data, said=said), *sections, drawing_section(mechanism, data)], {"stage": data})

@@ -15,7 +15,6 @@
 
 #define MOST 16     /* vectors of a block */
 #define MODES 12    /* modes that may be asked for */
-#define USUAL 6      /* modes, where the platform's are below all others: known to the compiler */
 #define ROUNDING 1e-15
 #define BESIDE 1e-7 /* how far below its value a single mode's shift is: its matrix is never singular */
 #define ABOVE 5e-3  /* how far above the last of all values that are sought it is counted that there are no more */
@@ -608,8 +607,7 @@ static void polish(const Task *t, Room *w, Ritz *known)
         known->sine[c] = pick(square == square, known->sine[c], square);
         known->quotient[c] = between;
     }
-    if (m == USUAL) combine(t, w, known, USUAL);
-    else combine(t, w, known, m);
+    combine(t, w, known, m);
 }
 
 /* ---- which modes are the platform's, one design at a time ---- */
@@ -698,8 +696,7 @@ static void designs(const Task *t, Room *w)
     assemble(t, w);
     eliminate(t, w, all(0.0), 0);
     memcpy(w->root, w->other + OWN * (t->bodies - 1), sizeof w->root);
-    if (t->m == USUAL && single == USUAL) begin(t, w, &known, USUAL, USUAL);
-    else begin(t, w, &known, (int)t->m, single);
+    begin(t, w, &known, (int)t->m, single);
     for (int64_t round = 0; round < t->rounds && left; round++) {
         if (round) { /* M times the modes */
             blend(n, single, (Layout){1, n}, n, w->ahead, w->force, known.mix, 0, single);

@@ -112,8 +112,10 @@ def _colours(parts: Sequence[str]) -> dict[str, str]:
 
 def _tinted(colour: str, white: float) -> str:
     """A colour mixed with so much white."""
-    parts = (int(colour[start : start + 2], 16) for start in (1, 3, 5))
-    return "#" + "".join(f"{round(part + white * (255 - part)):02x}" for part in parts)
+    from matplotlib.colors import to_hex, to_rgb
+
+    red, green, blue = (part + white * (1.0 - part) for part in to_rgb(colour))
+    return to_hex((red, green, blue))
 
 
 def _format_axes(axes: Any, label: str) -> None:

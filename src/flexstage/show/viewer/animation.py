@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -35,14 +35,8 @@ _MILLIMETRES = DisplayUnit("mm", 1e3)
 _OWN = {"strain": DisplayUnit("um/m", 1e6), "lost": DisplayUnit("%", 100.0)}
 
 
-@dataclass(frozen=True)
-class _Label:
-    """What a small motion is called, how it reads in a list, what is remarked of it, its frequency [Hz] where it has one."""
-
-    name: str
-    text: str
-    remark: str
-    frequency: float | None = None
+_Label: TypeAlias = tuple[str, str, str, float | None]
+"""What a small motion is called, how it reads in a list, what is remarked of it, its frequency [Hz] where it has one."""
 
 
 def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: str = "") -> StageData:
@@ -75,7 +69,7 @@ def _gives_way(still: StageData, case: CaseFactor, found: Critical, number: int)
     place = "" if case.place == REST else f"  {case.place}"
     label = to_typography(f"{case.kind}  × {format_value(case.factor, '1', 4)}{place}")
     name = "buckling" if number == 0 else f"buckling {number + 1}"
-    yield from _about(still, found.state, critical_motion(found), [_Label(name, label, to_typography(f"{case.load}, {case.place}"))])
+    yield from _about(still, found.state, critical_motion(found), [(name, label, to_typography(f"{case.load}, {case.place}"), None)])
 
 
 def modes_at_data(mechanism: Mechanism, there: OperatingPoint, found: Modes, said: str, *, count: int = 12) -> StageData:
@@ -170,7 +164,7 @@ def _told(path: LoadPath, point: int) -> str:
 
 def _labels(frequencies: Array, said: str) -> list[_Label]:
     return [
-        _Label(str(number + 1), to_typography(f"{number + 1}  {format_value(float(each), 'Hz', 4)}"), said, float(each))
+        (str(number + 1), to_typography(f"{number + 1}  {format_value(float(each), 'Hz', 4)}"), said, float(each))
         for number, each in enumerate(frequencies)
     ]
 
@@ -180,13 +174,13 @@ def _about(still: StageData, state: State, moved: Motions, labels: Sequence[_Lab
     poses = _poses(still, state)[:1]
     lines = {name: Line(line.shares, line.place[:1], line.turn[:1]) for name, line in centre_lines(state).items()}
     order = [still.bodies.index(name) for name in state.model.bodies]
-    for number, label in enumerate(labels):
+    for number, (name, label, remark, frequency) in enumerate(labels):
         bodies = np.zeros((len(still.bodies), 6))
         bodies[order] = moved.bodies[number]
         inside = {each: rows[number] for each, rows in moved.lines.items()}
         shape = np.concatenate([bodies, *(_carried(still, carrier, bodies, lines, inside) for carrier in _bending(still))])
         course = Course(frames=np.zeros(1, dtype=int), poses=poses, shape=shape, curves=(), beyond=((),), said=("",))
-        yield Motion(Group.STATE, label.name, label.text, np.zeros((0, 6)), label.remark, label.frequency, course=course)
+        yield Motion(Group.STATE, name, label, np.zeros((0, 6)), remark, frequency, course=course)
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,7 +216,7 @@ def _poses(still: StageData, state: State) -> Array:
         turn[:, place] = state.pose.turn[:, number]
     references = _references(still)
     lines = centre_lines(state)
-    rows = [np.concatenate([position, _vectors(turn)], axis=-1)]
+    rows = [np.concatenate([position, logarithm(turn)], axis=-1)]
     at = _moved_point(references, position, turn)
     rows += [_piece(carrier, lines.get(carrier.name), at, turn) for carrier in _bending(still)]
     return np.nan_to_num(np.concatenate(rows, axis=1))
@@ -253,22 +247,18 @@ def _piece(carrier: _Carrier, line: Line | None, at: _At, turn: Array) -> Array:
         place = first[:, None] + shares[:, None] * (second - first)[:, None]
         one, other = (turn[:, body] for body in carrier.bodies)
         half = logarithm(np.swapaxes(one, -1, -2) @ other)
-        vectors = _vectors(one[:, None] @ exponential(shares[:, None] * half[:, None]))
+        vectors = logarithm(one[:, None] @ exponential(shares[:, None] * half[:, None]))
     return np.concatenate([place - drawn, vectors], axis=-1)
 
 
 def _resampled(line: Line, shares: Array) -> tuple[Array, Array]:
     """Places and rotation vectors (b, NODES, 3) of a centre line, whose slope is that of its sections."""
-    vectors = _vectors(line.turn)
+    vectors = logarithm(line.turn)
     cut = [
         np.stack([np.stack([np.interp(shares, line.shares, row) for row in case.T], axis=-1) for case in each])
         for each in (line.place, vectors)
     ]
     return cut[0], cut[1]
-
-
-def _vectors(turn: Array) -> Array:
-    return logarithm(turn)
 
 
 def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[str, Line], moved: Mapping[str, Array]) -> Array:

@@ -147,9 +147,20 @@ def stage_data(
     how many of the lowest modes are shown; those of the platform always are. Raises `DesignError` where the stage cannot be drawn.
     """
     still = still or still_data(mechanism, text=text)
-    notes = list(still.notes)
-    motions = tuple(_motions(mechanism, still.bones, count, notes, model=model, weighed=weighed, kinematics=kinematics, found=found))
-    return replace(still, motions=motions, notes=tuple(notes))
+    notes, motions, bones = list(still.notes), list[Motion](), still.bones
+    model = model or _attempt("modes, strokes and deflections", lambda: lumped(mechanism), notes)
+    kinematics = kinematics or _attempt("ideal motions", lambda: ideal(mechanism), notes)
+    if model is not None:
+        moving, about = weighed or model, "" if weighed is None or weighed is model else _LOADED
+        found = found or _attempt("modes", lambda: platform_modes(mechanism, moving), notes)
+        motions += [] if found is None else mode_motions(moving, kinematics, found, bones, count, about=about)
+        motions += _attempt("strokes", lambda: list(stroke_motions(mechanism, model, kinematics, bones)), notes) or []
+    if kinematics is not None:
+        motions += axis_motions(kinematics, bones)
+    if model is not None:
+        motions += _attempt("deflections", lambda: list(deflections(mechanism, model, kinematics, bones)), notes) or []
+        motions += _attempt("drift", lambda: list(drift_motions(mechanism, model, bones)), notes) or []
+    return replace(still, motions=tuple(motions), notes=tuple(notes))
 
 
 def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
@@ -187,33 +198,6 @@ def _bends(assembly: Assembly) -> Mapping[str, Bend]:
     kinds = {id(link.part): link.part for link in assembly.links.values()}
     known = {key: bend_of(part) for key, part in kinds.items()}
     return {name: known[id(link.part)] for name, link in assembly.links.items()}
-
-
-def _motions(
-    mechanism: Mechanism,
-    bones: Skeleton,
-    count: int,
-    notes: list[str],
-    *,
-    model: LinearModel | None,
-    weighed: LinearModel | None,
-    kinematics: Kinematics | None,
-    found: Modes | None,
-) -> Iterator[Motion]:
-    """All motions that the stage has; what it has not goes to the notes."""
-    model = model or _attempt("modes, strokes and deflections", lambda: lumped(mechanism), notes)
-    kinematics = kinematics or _attempt("ideal motions", lambda: ideal(mechanism), notes)
-    if model is not None:
-        moving = weighed or model
-        found = found or _attempt("modes", lambda: platform_modes(mechanism, moving), notes)
-        about = "" if weighed is None or weighed is model else _LOADED
-        yield from () if found is None else mode_motions(moving, kinematics, found, bones, count, about=about)
-        yield from _attempt("strokes", lambda: tuple(stroke_motions(mechanism, model, kinematics, bones)), notes) or ()
-    if kinematics is not None:
-        yield from axis_motions(kinematics, bones)
-    if model is not None:
-        yield from _attempt("deflections", lambda: tuple(deflections(mechanism, model, kinematics, bones)), notes) or ()
-        yield from _attempt("drift", lambda: tuple(drift_motions(mechanism, model, bones)), notes) or ()
 
 
 def _attempt(what: str, work: Callable[[], _Found], notes: list[str]) -> _Found | None:
