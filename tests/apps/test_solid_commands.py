@@ -270,7 +270,7 @@ def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypat
 def test_outlines_that_do_not_meet_are_named(command: Command, tmp_path: Path) -> None:
     stage = fs.case("parallelogram")
     left = replace(stage.links["left"], at=tuple(np.add(stage.links["left"].at, (0.0, 2e-5, 0.0)).tolist()))
-    fs.dump(replace(stage, links={**stage.links, "left": left}, formulas={}), tmp_path / "apart.toml")
+    fs.dump(replace(stage, links={**stage.links, "left": left}), tmp_path / "apart.toml")
     ended = command("solid", "apart.toml", "--json", "out.json")
     assert ended.code == 2
     assert "left: its end face is 20 um away from platform" in ended.err

@@ -21,15 +21,15 @@ _LAST = ("overrides", "requirements", "sources", TAGS)
 def tree_of(mechanism: Mechanism) -> dict[str, Any]:
     """Return the tree of a description's file.
 
-    Values equal to their defaults are left out, but for gravity. Raises `DesignError` for what a file cannot hold: a batch, a complex
-    number, a value that its formula does not give.
+    Values equal to their defaults are left out, but for gravity; of a value that its formula does not give, the formula. Raises
+    `DesignError` for what a file cannot hold: a batch, a complex number.
 
     >>> tree_of(Mechanism("empty"))
     {'format': 'flexstage 1', 'name': 'empty', 'gravity': ['0 m/s^2', '0 m/s^2', '-9.80665 m/s^2']}
     """
     require(kind_findings(mechanism))
-    require(formula_findings(mechanism))  # a value that its formula does not give would be lost
-    writer = Writer(formulas=mechanism.formulas)
+    stale = {each.where for each in formula_findings(mechanism)}
+    writer = Writer(formulas={address: text for address, text in mechanism.formulas.items() if address not in stale})
     tree = {"format": FORMAT} | writer.write(node_of(Mechanism), mechanism, "")
     places = {key: locate(mechanism, key) for key in mechanism.overrides}
     overrides = {key: writer.write(place.node, mechanism.overrides[key], place.address) for key, place in places.items()}
