@@ -132,10 +132,8 @@ def test_hysteresis_is_left_above_the_corner_and_whole_below(period, corner, sha
 
 def strokes(given, path):
     """What a stack alone makes (n,) of commands (n,)."""
-    actuate, came, asked = Actuation(given), np.empty((len(path), 1)), np.empty(1)
-    for value, stroke in zip(path, came, strict=True):
-        actuate(np.array([value]), asked, np.empty(1), stroke)
-    return came[:, 0]
+    actuate = Actuation(given)
+    return np.array([actuate(np.array([value]))[2][0] for value in path])
 
 
 def test_creep_is_left_above_the_corner_and_whole_below():

@@ -376,14 +376,6 @@ async def test_what_is_computed_too_long_of_a_text_that_is_no_more_is_given_up(p
 
 
 @on_page
-async def test_geometry_is_sent_once(page, studio):
-    before = page.bytes
-    await page.ask(say.Edit, text=TEXT.replace("A guide.", "No other stage."), revision=page.state.revision)
-    await page.settle()
-    assert page.bytes - before < 3_000
-
-
-@on_page
 async def test_what_no_page_shows_is_computed_when_it_is_looked_at(page, studio):
     """With another pane in front and nothing moving, a change gives no strokes and no motions; looking at them does, and nothing else."""
     before = page.counts[say.Reach]

@@ -166,7 +166,7 @@ def test_frequencies_of_the_drawn_stage_do_not_stand_in_rows_of_the_loaded_one(p
     """Four loaded modes at rest, three of the drawn stage while a slider moves: no row shows a number of another stage."""
     rows = tuple(Figure(f"frequency.platform.{number}", "frequency", "Hz", "Hz", 1.0, 10.0 * number, None) for number in range(1, 5))
     told = Figures(1, rows, None, None, (), (), None, (), "", {}, 0.0)
-    moved = Frequencies(0, THICKNESS, 5e-4, True, (11.5, 21.5, 31.5, None), ())
+    moved = Frequencies(0, THICKNESS, 5e-4, (11.5, 21.5, 31.5, None), ())
     shown = "() => [...document.querySelectorAll('#pane-figures [data-figure]')].map((each) => each.textContent)"
     server.say(told, moved)
     until(page, lambda: page.evaluate(shown)[:3] == ["11.5", "21.5", "31.5"])

@@ -6,7 +6,6 @@ Its numbers are made at test time by the pinned version; it solves the same Ricc
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
@@ -43,30 +42,26 @@ def test_a_row_of_law_and_notch_is_the_peer_s():
     np.testing.assert_allclose(sampled, digital(np.exp(2j * np.pi * FREQUENCIES * STEP)), rtol=1e-8)
 
 
-@pytest.mark.parametrize("given", [Hardware(), Hardware(rate=5e3, delay=130e-6)])
-def test_linear_quadratic_gains_are_the_peer_s(given):
-    """Regulator with integrators and observer, continuous and sampled, of the shipped two-axis stage with four modes."""
+def test_linear_quadratic_gains_are_the_peer_s():
+    """Regulator with integrators and observer, sampled, of the shipped two-axis stage with four modes."""
     import control as peer
 
     stage = case("xy-stage")
-    one = plant(lumped(stage), ideal(stage), given, modes=4)
+    one = plant(lumped(stage), ideal(stage), Hardware(rate=5e3, delay=130e-6), modes=4)
     model = pose_plant(one)
     found = lqg(model, one.coordinates, Weights(30.0, 0.2), Disturbances(2e-9, dict.fromkeys(one.gauges, 1e-11)))
-    states, step = len(model.A), model.step or 1.0
-    A = np.block([[model.A, np.zeros((states, 2))], [-step * model.C, np.eye(2) * (model.step is not None)]])
+    states, step = len(model.A), model.step
+    A = np.block([[model.A, np.zeros((states, 2))], [-step * model.C, np.eye(2)]])
     B = np.vstack([model.B, -step * model.D])
     C = np.hstack([model.C, np.zeros((2, 2))])
     cost = 0.2 * C.T @ C + (60.0 * np.pi) ** 2 * np.diag([0.0] * states + [1.0, 1.0])
     effort, cross = np.eye(2) + 0.2 * model.D.T @ model.D, 0.2 * C.T @ model.D
-    solve = peer.lqr if model.step is None else peer.dlqr
-    gain = solve(A, B, cost, effort, cross)[0]
+    gain = peer.dlqr(A, B, cost, effort, cross)[0]
     scale = np.max(np.abs(gain))
     np.testing.assert_allclose(np.hstack([found.regulator, -found.integral]), gain, rtol=1e-7, atol=1e-7 * scale)
     # noises in units of the gauges' density, which leaves the gains as they are
     pose = one.coordinates.pose
     noise = pose @ pose.T + 200.0**2 * model.D @ model.D.T
     state, both = 200.0**2 * model.B @ model.B.T, 200.0**2 * model.B @ model.D.T
-    riccati = peer.care if model.step is None else peer.dare
-    gain = riccati(model.A.T, model.C.T, 0.5 * (state + state.T), noise, both)[2].T
-    ours = found.observer if model.step is None else model.A @ found.observer
-    np.testing.assert_allclose(ours, gain, rtol=1e-6, atol=1e-6 * np.max(np.abs(gain)))
+    gain = peer.dare(model.A.T, model.C.T, 0.5 * (state + state.T), noise, both)[2].T
+    np.testing.assert_allclose(model.A @ found.observer, gain, rtol=1e-6, atol=1e-6 * np.max(np.abs(gain)))

@@ -11,9 +11,7 @@ import pyuff
 import scipy.io
 
 from flexstage.base.finding import DesignError
-from flexstage.experiment.formats.arrays import SideBySide
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.formats.uff.values import BinaryValues, PrintedValues
 from flexstage.experiment.identification.diagnosis.peaks import Doubt
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.records.options import Arrays, Options
@@ -37,13 +35,11 @@ def record(name: str, options: Options | None = None) -> Record:
     return found
 
 
-@pytest.mark.parametrize(("name", "kind"), [("Sample_UFF58_ascii.uff", PrintedValues), ("Sample_UFF58b_bin.uff", BinaryValues)])
-def test_a_microphone(name: str, kind: type) -> None:
+@pytest.mark.parametrize("name", ["Sample_UFF58_ascii.uff", "Sample_UFF58b_bin.uff"])
+def test_a_microphone(name: str) -> None:
     found = record(name)
     assert (found.names, found.channels[0].unit, found.length) == (("Mic 01",), "Pa", 79292)
     assert found.rate == 65536.0  # its step is printed as 1.52588E-05 s
-    assert isinstance(found.samples, SideBySide)
-    assert isinstance(found.samples.sources[0], kind)
     np.testing.assert_array_equal(found.values[:, 0], pyuff.UFF(str(FOLDER / name)).read_sets(0)["data"])
 
 

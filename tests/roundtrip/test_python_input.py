@@ -157,4 +157,5 @@ def test_a_value_that_its_formula_does_not_give_is_written_without_it():
     changed = replace(stage, links={**stage.links, "left": left})
     back = fs.loads(fs.dumps(changed))
     assert back.links == changed.links
-    assert changed.formulas.items() - back.formulas.items() == {item for item in stage.formulas.items() if item[0].startswith("links.left.at")}
+    lost = changed.formulas.keys() - back.formulas.keys()
+    assert lost == {"links.left.at.x", "links.left.at.y"}
