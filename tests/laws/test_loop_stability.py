@@ -11,9 +11,13 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from flexstage.base.finding import DesignError
+from flexstage.cases.registry import case
 from flexstage.control.robustness.disk import disk_margins
 from flexstage.control.robustness.stability import require_stable, verdict
 from flexstage.control.robustness.stability_margins import bandwidths, crosstalk, margins, peaks
+from flexstage.control.study.setup import ControllerSetup, LoopSetup
+from flexstage.control.study.study import loop_study
+from flexstage.control.systems import norm
 from flexstage.control.systems.closed import LoopBreak, loop, open_at, open_everywhere
 from flexstage.control.systems.curves import sensitivity
 from flexstage.control.systems.system import select
@@ -216,6 +220,18 @@ def test_peaks_are_the_highest(seed, rate):
             assert highest(grid, turned) <= peak.value * (1.0 + 1e-10)
             if np.isfinite(peak.frequency):
                 assert abs(highest(np.array([peak.frequency]), turned) / peak.value - 1.0) < 1e-9
+
+
+def test_a_peak_is_no_less_than_margins_make_it_whatever_the_units_of_states():
+    """max|S| >= g / (g - 1), 1 / (2 sin(phi / 2)), of a loop whose S is larger at half the rate than at any of its poles."""
+    found = loop_study(case("parallelogram"), LoopSetup(controller=ControllerSetup(kind="lqg")))
+    (edges,) = found.margins.channels
+    whole = sensitivity(open_at(found.closed, LoopBreak.POSE))
+    for seed in range(8):
+        units = 10.0 ** np.random.default_rng(seed).uniform(-3.0, 3.0, len(whole.A))
+        scaled = replace(whole, A=whole.A * units[:, None] / units, B=whole.B * units[:, None], C=whole.C / units)
+        assert norm.peak(scaled).value == pytest.approx(found.peaks.sensitivity.value, rel=1e-6)
+    assert found.peaks.sensitivity.value >= max(1.0 / (1.0 - 1.0 / edges.gain_high.value), 0.5 / np.sin(0.5 * edges.phase.value))
 
 
 def test_unstable_loops_have_no_margins():
