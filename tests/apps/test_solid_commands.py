@@ -76,7 +76,7 @@ def test_the_stage(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyP
     for title in ("Stiffness at platform", "Modes", "Elasticity of the bodies", "Highest stress over the strokes"):
         assert title in ended.out
     page = (tmp_path / "stage.html").read_text(encoding="utf-8")
-    assert page.count("data:image/png;base64,") == 8  # the stage, six platform modes and the stress
+    assert page.count("data:image/png;base64,") == 15  # the stage; six platform modes and the stress, each with its colour bar
     assert not re.search(r"(src|href)=.?https?:|url\(.?https?:", page)
     assert "mode fea 1" in page  # beside its partner of theory
 
