@@ -18,12 +18,12 @@ CEILINGS = {
     "analysis": 70_200,
     "show": 64_900,
     "solid": 79_200,
-    "experiment": 101_000,
-    "control": 158_800,
-    "studies": 54_700,
+    "experiment": 100_700,
+    "control": 158_100,
+    "studies": 54_600,
     "apps": 36_200,
     ".": 400,
-    "all": 812_700,
+    "all": 811_600,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
