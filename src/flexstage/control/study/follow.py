@@ -33,22 +33,23 @@ def follow(
     step = closed.step or 1.0
     around = round(noisy.rest / step)
     wanted = np.concatenate([np.zeros((around, path.shape[1])), path, np.tile(path[-1], (around, 1))])
-    window, number, found = slice(around, around + len(path)), asked.passes, dict[str, Any]()
+    window, number, learned, repeated = slice(around, around + len(path)), asked.passes, None, None
     if asked.method is Following.REPETITIVE:
         repetition = _repetition(course, around, step)
-        seen = repeat(noisy.begin(len(wanted)), closed, control, wanted, repetition, gain=asked.gain, spread=asked.spread)
-        number, found = 0, {"repeated": seen, "commanded": seen.commanded}
+        repeated = repeat(noisy.begin(len(wanted)), closed, control, wanted, repetition, gain=asked.gain, spread=asked.spread)
+        number, commanded = 0, repeated.commanded
     elif asked.method is Following.LEARNING:
         lesson = Lesson(asked.passes, asked.gain, asked.spread, window)
         learned = learn(lambda commanded, number: noisy.simulate(commanded, number).pose, closed, control, wanted, lesson)
-        found = {"learned": learned, "commanded": learned.commanded}
+        commanded = learned.commanded
     elif asked.method is Following.INVERSE:
-        found = {"commanded": inverse_path(closed, control, wanted, asked.spread)}
+        commanded = inverse_path(closed, control, wanted, asked.spread)
     else:
         shaper = (zv if asked.method is Following.ZV else zvd)(asked.frequency or 0.0, asked.damping)
-        found = {"commanded": shaper.shape(wanted, step)}
-    whole = noisy.simulate(found["commanded"], number)
-    return part_of(replace(whole, reference=wanted, error=wanted - whole.pose), window), found
+        commanded = shaper.shape(wanted, step)
+    whole = noisy.simulate(commanded, number)
+    seen = part_of(replace(whole, reference=wanted, error=wanted - whole.pose), window)
+    return seen, {"commanded": commanded, "learned": learned, "repeated": repeated}
 
 
 def _repetition(course: Course, around: int, step: float) -> Repetition:

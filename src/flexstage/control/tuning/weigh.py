@@ -165,7 +165,7 @@ def merit(spec: TuningSpec, found: Outcome) -> float:
         TuningObjective.SETTLING: 1.0 / settling,
         TuningObjective.NOISE: 1.0 / np.maximum(found.noise, 1e-300),
     }
-    return float(np.mean(np.log(merits[spec.objective])))
+    return float(np.mean(np.log(merits[spec.objective or TuningObjective.BALANCE])))
 
 
 def worth(within: Field, found: Outcome) -> float:
