@@ -27,7 +27,7 @@ DEFINED_TWICE = """
 Amount Amplifier Asked Axes Axis Band Bearing Bench Bend Block Blocks Bounds Buckling Change Channel Code Combination Command
 Comparison Compensation Contribution Course Curve Curves Doubt Draft Drive Elimination Ends Engine Evidence Fact Family Field Fit Fitted
 Followed Found Free Grid Group Hardware Hold Inertia Job Jobs Joint Judgement Kind Law Layout Leg Limits Line Lines Margins Matrix
-Measured Modes Motion Motions Notch Numbers Outcome Pairs Part Peak Peaks Piece Place Plan Plate Point Pose Problem Reach Reading
+Measured Modes Motion Motions Notch Numbers Outcome Pairs Part Peak Piece Place Plan Plate Point Pose Problem Reach Reading
 Resolution Response Rest Row Rows Rule Run Scene Section Session Shape Shares Side Simulated Slopes Slot Solid Solution
 Spectrum Spot Stacks Stage Start State Status Step Stream Stroke Superelement Surface Sweep System Table Tables Task Told Values
 Variable Variant Verdict View Weights
