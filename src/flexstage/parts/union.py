@@ -132,7 +132,7 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
             left = found.volume - sum(moments.volume for hole in holes if (moments := _region((*both, hole))) is not None)
             problems += _mixtures(*both, float(np.max(np.real(left)))) if np.any(np.real(left) > _FLUSH * scale**3) else ()
         elif np.any(is_there := np.abs(found.volume) > _FLUSH * scale**3):
-            groups[one, other] = found.times(is_there)
+            groups[one, other] = found.times(is_there.astype(float))
     require(problems)
     pairs, told = set(groups), 0
     while groups:
@@ -151,7 +151,7 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
             found = _region([seen[number] for number in group])
             require(_refusals([seen[number] for number in group]) if found is None else ())
             if found is not None and np.any(is_there := np.abs(found.volume) > _FLUSH * scale**3):
-                groups[group] = found.times(is_there)
+                groups[group] = found.times(is_there.astype(float))
 
 
 def _box(drawn: Drawn) -> tuple[tuple[Array, int], ...]:
