@@ -20,7 +20,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, Sphere, within_polygon
 from flexstage.parts.pieces import solid_pieces
-from flexstage.spatial.convex import Boxes, separation, separations
+from flexstage.spatial.convex import Boxes, Convex, separation, separations
 from flexstage.spatial.frame import Frame
 
 _FLUSH = 1e-9
@@ -131,8 +131,8 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
             holes = [each for each in seen if each.solid.subtract and each.solid.material in {drawn.solid.material for drawn in both}]
             left = found.volume - sum(moments.volume for hole in holes if (moments := _region((*both, hole))) is not None)
             problems += _mixtures(*both, float(np.max(np.real(left)))) if np.any(np.real(left) > _FLUSH * scale**3) else ()
-        elif np.any(is_there := np.abs(found.volume) > _FLUSH * scale**3):
-            groups[one, other] = found.times(is_there.astype(float))
+        elif np.any(there := np.where(np.abs(found.volume) > _FLUSH * scale**3, 1.0, 0.0)):
+            groups[one, other] = found.times(there)
     require(problems)
     pairs, told = set(groups), 0
     while groups:
@@ -150,8 +150,8 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         for group in wider:
             found = _region([seen[number] for number in group])
             require(_refusals([seen[number] for number in group]) if found is None else ())
-            if found is not None and np.any(is_there := np.abs(found.volume) > _FLUSH * scale**3):
-                groups[group] = found.times(is_there.astype(float))
+            if found is not None and np.any(there := np.where(np.abs(found.volume) > _FLUSH * scale**3, 1.0, 0.0)):
+                groups[group] = found.times(there)
 
 
 def _box(drawn: Drawn) -> tuple[tuple[Array, int], ...]:
@@ -464,14 +464,11 @@ def _meet(first: Drawn, second: Drawn, scale: float) -> bool:
     """Whether two solids overlap in a design, by their convex pieces."""
     shape = _shape((first, second))
     for design in np.ndindex(shape):
-        one, other = (
-            [
-                piece.within(Frame(*(_spread(*part, shape)[design] for part in _box(each)[:2])))
-                for piece in solid_pieces(_at(each.solid, shape, design))
-            ]
-            for each in (first, second)
-        )
-        if any(separation(*pair)[0] < -_FLUSH * scale for pair in product(one, other)):
+        pieces: list[list[Convex]] = []
+        for each in (first, second):
+            turn, at = (_spread(*part, shape)[design] for part in _box(each)[:2])
+            pieces.append([piece.within(Frame(turn, at)) for piece in solid_pieces(_at(each.solid, shape, design))])
+        if any(separation(*pair)[0] < -_FLUSH * scale for pair in product(*pieces)):
             return True
     return False
 
