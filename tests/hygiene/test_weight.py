@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 54_600,
     "apps": 36_200,
     ".": 400,
-    "all": 811_600,
+    "all": 811_700,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
