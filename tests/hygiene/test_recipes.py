@@ -153,7 +153,7 @@ def test_recipes_give_the_feature(copy, work, feature) -> None:
     if feature == "hinge":
         assert '"const": "taper"' in told
     elif feature == "compound":
-        assert "2 leaf" in told
+        assert "2 x leaf" in told
     elif feature == "gauge and measure":
         assert "sag" in (work / "s.json").read_text()
     elif feature == "command":
