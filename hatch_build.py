@@ -68,6 +68,7 @@ def build(compiler: tuple[str, ...], source: Path, lanes: Lanes) -> Path | None:
     command = [*compiler, *FLAGS, *lanes.flags, *macros, f"-I{HEADERS}", "-o", str(begun), source.name, "-lm"]
     done = subprocess.run(command, cwd=source.parent, capture_output=True, text=True, check=False)
     if done.returncode:
+        begun.unlink(missing_ok=True)
         sys.stderr.write(f"{source}, {lanes.name}: {done.stderr.strip()[:2000]}\n")
         return None
     begun.replace(path)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import hatch_build
 from flexstage.base.processes.native import HEADERS, KERNELS, Lanes, library_path, processor_lanes
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.batch.engine import plan
@@ -19,7 +20,7 @@ from flexstage.models.batch.kernel import Job, kernel, kernel_job, solve_designs
 
 HERE, KERNEL = Path(__file__).parent, KERNELS[0]
 NAMES = ("parts.neck.thickness", "B2/front.thickness", "placements.B1-B3.pattern.radius", "materials.steel.density")
-FLAGS = ("-O3", "-ffp-contract=fast", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}")
+FLAGS = (*hatch_build.FLAGS[:3], "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}")
 PACKED = {"avx512": r"vfn?m(?:add|sub)\d+pd .*%[xz]mm", "avx2": r"vfn?m(?:add|sub)\d+pd .*%[xy]mm", "sse2": r"\bmulpd"}
 ARM, EMULATOR, ROOT = "aarch64-linux-gnu-gcc", "qemu-aarch64", "/usr/aarch64-linux-gnu"
 

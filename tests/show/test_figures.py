@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import io
 import json
 import re
 import xml.etree.ElementTree as ET
@@ -11,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from flexstage.analysis.linear_statics.statics import directional
 from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
@@ -196,3 +198,22 @@ def test_a_reading_has_the_numbers_and_the_places_of_what_is_drawn() -> None:
         assert np.allclose(
             [left, top + height, left + width, top], [ends[0][0], whole - ends[0][1], ends[1][0], whole - ends[1][1]], atol=0.02
         )
+
+
+def test_an_image_keeps_its_colours_and_a_name_its_quotes() -> None:
+    """Colours of few kinds go into a table, opacity among them; a style within a text is no style."""
+    drawn = np.random.default_rng(3).integers(0, 256, (40, 4), dtype=np.uint8)[np.arange(1200).reshape(30, 40) % 40]
+    named = ' style="fill: #1f2a37"'
+    with style_context():
+        figure = canvas(40.0 / 72.0, 30.0 / 72.0)
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        axes.set_axis_off()
+        axes.imshow(drawn, interpolation="none", aspect="auto")
+        for place in range(9):
+            axes.text(place, place, named)
+    text = to_svg(figure, "a", "b")
+    assert text.count(named) == 9
+    found = re.findall(r"data:image/png;base64,([\w+/=]+)", text)
+    pixels = np.asarray(Image.open(io.BytesIO(base64.b64decode(found[0]))).convert("RGBA"))
+    shown = drawn[..., 3] > 0
+    assert np.array_equal(pixels[shown], drawn[shown]) or np.array_equal(pixels[::-1][shown], drawn[shown])

@@ -41,7 +41,7 @@ from flexstage.control.tuning.objective import TuningObjective
 from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
 from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import CommandResult, write_answer
+from flexstage.show.command.answer import CommandResult, write_result
 from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import At, Fixed, Footing, Load, Place, Temperature, footing
 from flexstage.show.command.models import Models
@@ -250,13 +250,13 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         found = None if compare else loop_study(mechanism, asked, **on)
     told, documents = None if fea else asked.model, {"json": json, "xlsx": xlsx, "report": report}
     if rivals is not None:
-        write_answer("loops", _compared(rivals, asked, stands, told), documents, csv)
+        write_result("loops", _compared(rivals, asked, stands, told), documents, csv)
     if found is not None:
         for target in exports:
             write_export(found, target)
         if hardware is not None:
             write_hardware(found, hardware, Precision.SINGLE if float32 else Precision.DOUBLE)
-        write_answer("loop", _closed(found, stands, told), documents, csv)
+        write_result("loop", _closed(found, stands, told), documents, csv)
 
 
 def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Identification | None:

@@ -37,10 +37,10 @@ _HANG = 2
 
 @dataclass(frozen=True)
 class CommandResult:
-    """What a command found: the `body` of its document, its `tables` and the HTML of its `report`, each made where it is asked for.
+    """The result of a command: `body` of its document, `tables`, and `report` as HTML, each computed on request.
 
-    `mechanism` is the description it is about (`None`: a record alone), `model` the theory it is of. `warnings` are the result's own, told
-    after those about the description.
+    `mechanism` is the description (`None`: a record alone), `model` the theory. `warnings` concern the result and follow those about the
+    description.
     """
 
     mechanism: Mechanism | None
@@ -57,11 +57,11 @@ _Given = ParamSpec("_Given")
 
 
 def command(*files: str) -> Callable[[Callable[_Given, CommandResult]], Callable[_Given, None]]:
-    """Make a command of a function that returns a `CommandResult`: documents where they are asked for, else tables.
+    """Make a command of a function that returns a `CommandResult`.
 
-    A parameter whose type is a dataclass stands for the options among its fields; a `Mechanism` is opened from its file. `files` name the
-    options of further output files: those that the function writes, and `report`. All outputs are tried before the function is called.
-    Where one of them goes to stdout, tables do not, and warnings go to stderr.
+    The command writes the requested documents, or prints the tables. A parameter of a dataclass type stands for the options among its
+    fields; a `Mechanism` is read from its file. `files` are the options of further output files: those that the function writes, and
+    `report`. All outputs are checked before the function is called. If one is stdout, no tables are printed, and warnings go to stderr.
     """
 
     def decorate(function: Callable[_Given, CommandResult]) -> Callable[_Given, None]:
@@ -83,7 +83,7 @@ def command(*files: str) -> Callable[[Callable[_Given, CommandResult]], Callable
             opened = {name: each.open() for name, each in made.items() if isinstance(each, DesignOptions)}
             called: Any = function
             found = called(**{name: ({**made, **given} | opened)[name] for name in own})
-            write_answer(function.__name__.replace("_", "-"), found, outputs, given["csv"])
+            write_result(function.__name__.replace("_", "-"), found, outputs, given["csv"])
 
         vars(run)["__signature__"] = Signature(offered)
         run.__annotations__ = {each.name: each.annotation for each in offered}
@@ -108,8 +108,8 @@ def _paths(given: Any) -> list[Path]:
     return [each for each in (given if isinstance(given, list | tuple) else [given]) if isinstance(each, Path)]
 
 
-def write_answer(kind: str, found: CommandResult, outputs: Mapping[str, Any], csv: Path | None) -> None:
-    """Write what is asked for of `json`, `xlsx` and `report` among the outputs, by name, and `csv`; show tables unless one is stdout.
+def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], csv: Path | None) -> None:
+    """Write the requested outputs, by name `json`, `xlsx` and `report`, and `csv`; print the tables unless an output is stdout.
 
     `kind` is that of the JSON document.
     """

@@ -50,7 +50,11 @@ def _with_classes(body: str, name: str) -> str:
     counts = Counter(_STYLE.findall(body))
     known = {style: f"{name}-{number}" for number, (style, count) in enumerate(counts.items()) if count > _SEVERAL}
     rules = "".join(f".{own}{{{style}}}" for style, own in known.items())
-    return f"<style>{rules}</style>" + _STYLE.sub(lambda found: f' class="{known[found[1]]}"' if found[1] in known else found[0], body)
+
+    def with_class(tag: re.Match[str]) -> str:
+        return _STYLE.sub(lambda found: f' class="{known[found[1]]}"' if found[1] in known else found[0], tag[0])
+
+    return f"<style>{rules}</style>{_TAG.sub(with_class, body)}"
 
 
 def _tag_of_page(found: re.Match[str]) -> str:
@@ -65,7 +69,7 @@ def _tag_of_page(found: re.Match[str]) -> str:
 
 
 def _with_palette(data: bytes) -> str:
-    """A PNG in base64, its colours in a table where there are few: half as large."""
+    """A PNG in base64, its colours in a table where there are few."""
     from PIL import Image
 
     pixels = np.asarray(Image.open(io.BytesIO(data)).convert("RGBA"))
