@@ -61,7 +61,8 @@ DEFAULT = Run()
 def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
-    Pieces (see `piece_size`) are written one by one and gathered into the file when the run ends. Results do not depend on the number of workers or on the order of pieces; the same study gives the same file. An interruption keeps what is there. Raises
+    Pieces (see `piece_size`) are written one by one and gathered into the file when the run ends. Results do not depend on
+    the number of workers or on the order of pieces; the same study gives the same file. An interruption keeps what is there. Raises
     `DesignError` for a file that exists and is not to be resumed, belongs to another study, or is in use; for measures that the
     design lacks; and for a disk that is full.
 
