@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Annotated, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -20,6 +20,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, first_design, stack
 from flexstage.base.record import Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse, below, few
 from flexstage.base.units.quantity import LENGTH, RATIO
 from flexstage.beams.compliance import locked_freedoms as locked_by
@@ -122,7 +123,7 @@ def _lower(factor: float) -> float:
     return 100.0 * (1.0 - np.sqrt(1.0 - 1.0 / factor))
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
     """Load factors of the whole stage; with `limits`, of the worst strokes between them too. Kept for what asks the same next.
 
@@ -159,14 +160,14 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     )
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _loaded(mechanism: Mechanism, model: LinearModel) -> tuple[_Pieces, Array]:
     """The stage in pieces, and what its dead load adds to its stiffness: the same with and without strokes."""
     pieces = _pieces(mechanism, model)
     return pieces, pieces.softening(*_dead(mechanism, pieces))
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _pieces(mechanism: Mechanism, model: LinearModel) -> _Pieces:
     return _Pieces.of(mechanism, model)
 

@@ -17,6 +17,7 @@ from flexstage.apps.studio.design.answers import Reading
 from flexstage.apps.studio.protocol import Amount, Channel, Problem
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import first_design
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import Bound, Quantity
 from flexstage.base.units.unit import show
 from flexstage.mechanism.addresses.address import provenance, set_text
@@ -60,7 +61,7 @@ class _Source:
     make: Callable[[], Mechanism] = field(compare=False)
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def _made(source: _Source) -> Mechanism:
     return source.make()
 
@@ -130,7 +131,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, float, NumberNode]]:
         yield from place.node.numbers(value, place.address)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _stored_values(text: str, file: str) -> Mapping[str, float]:
     try:
         return {address: float(value) for address, value, _ in _numbers(design(text, file)) if np.ndim(value) == 0}
