@@ -13,9 +13,8 @@ import numpy as np
 import typer
 
 from flexstage.analysis.dynamics.pairing import Pair
-from flexstage.analysis.linear_statics.units import driven_units
 from flexstage.analysis.loaded.standing import require_standing
-from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.finding import Finding, refuse
 from flexstage.base.lazy import Late
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import RATIO, Quantity
@@ -29,7 +28,7 @@ from flexstage.mechanism.store.file import read_text
 from flexstage.parts.leaf import Leaf, LeafEnds
 from flexstage.parts.part import inner
 from flexstage.show.command.answer import CommandResult, command, print_missing
-from flexstage.show.command.options import Design, Report, order_option, output_option, text_option, word_option
+from flexstage.show.command.options import Design, order_option, output_option, text_option, word_option
 from flexstage.show.command.output import save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
@@ -44,10 +43,9 @@ from flexstage.solid.fea.jobs.remote import Limits, Pool
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.results import calibration, verification
 from flexstage.solid.results.hinges import Hinges, SolidHinge, hinges, solid_hinges
-from flexstage.solid.results.plan import Plan, reduction_plan, units_alone, verification_plan, work_ahead
+from flexstage.solid.results.plan import reduction_plan, units_alone, verification_plan, work_ahead
 from flexstage.solid.results.read import Solids, solids
 from flexstage.solid.results.resolution import NOT_ESTIMATED, Converged, Resolution
-from flexstage.solid.results.verified import Known, recall, retain
 from flexstage.solid.show.tables import (
     block_table,
     calibration_table,
@@ -101,7 +99,7 @@ class _Request:
 
     def ways(self, shown: ProgressBar) -> Ways:
         """By the cache of the user, with the progress shown."""
-        return Ways(Cache(), shown.step, Limits(memory=self.memory), self.pool)
+        return Ways(Cache(), shown.step, Limits(memory=self.memory), self.pool, print_warning)
 
 
 @dataclass(frozen=True)
@@ -168,7 +166,6 @@ def verify(
     mechanism: Mechanism,
     *,
     options: SolidOptions,
-    report: Report = None,
 ) -> CommandResult:
     """Compare theory with finite elements: which to trust?
 
@@ -176,16 +173,15 @@ def verify(
     own error. Rows that calibrated parts touch are not independent of FEA.
     """
     asked = options.request
-    known = recall(mechanism, asked.resolution, Cache()) if report is None and asked.memory is None else None
-    if known is None:
-        require_standing(mechanism)
-        with progress_bar() as shown, Pool() as pool:
-            found = _verify(mechanism, replace(asked, pool=pool), shown)
-        warnings = _verification_warnings(found, asked)
-        _retain(found, warnings, asked)
-    else:
-        print_note("\n".join(("to do: nothing, the verification is in the cache.", *known.notes)))
-        found, warnings = known.of(mechanism), known.warnings
+    require_standing(mechanism)
+    with progress_bar() as shown, Pool() as pool:
+        found = _verify(mechanism, replace(asked, pool=pool), shown)
+    solved = (("units", found.units), ("stage", found.stage))
+    warnings = (
+        *free_end_warnings(mechanism),
+        *_inexact_hinges(found.hinges),
+        *(warning for name, each in solved if each is not None for warning in _accuracy_warnings(name, each, asked.resolution)),
+    )
 
     def page() -> str:
         units = None if found.units is None else pages.unit_section(found.units)
@@ -199,46 +195,13 @@ def verify(
     return CommandResult(mechanism, lambda: found, lambda: _verification_tables(found), page, warnings=warnings)
 
 
-def _verification_warnings(found: verification.Verification, asked: _Request) -> tuple[Finding, ...]:
-    return (
-        *free_end_warnings(found.mechanism),
-        *_inexact_hinges(found.hinges),
-        *(warning for name, each in _solids_of(found) for warning in _accuracy_warnings(name, each, asked.resolution)),
-    )
-
-
-def _solids_of(found: verification.Verification) -> list[tuple[str, Converged[Any]]]:
-    return [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
-
-
-def _retain(found: verification.Verification, warnings: tuple[Finding, ...], asked: _Request) -> None:
-    """Keep what a verification tells, where the description and what was asked alone decide on it, not the memory that there was."""
-    failed = found.units is None and _drives_units(found.mechanism)
-    notes = tuple(f"{name}: {_accuracy_text(each)}" for name, each in _solids_of(found) if each.error <= asked.resolution.accuracy)
-    if asked.memory is None and not failed and not any(each.stopped for _, each in _solids_of(found)):
-        retain(Known(found.rows, dict(found.reasons), warnings, notes), found.mechanism, asked.resolution, Cache())
-
-
-def _drives_units(mechanism: Mechanism) -> bool:
-    """Whether units could be verified alone; not where strokes leave motions of the platform open."""
-    try:
-        return bool(driven_units(mechanism))
-    except DesignError:
-        return False
-
-
 def _verify(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> verification.Verification:
     """The verification, its cost told before it begins, and each verdict as it is known."""
     reduce, compute = _solids(asked, shown), _hinges(asked, shown)
     todo = verification_plan(mechanism, asked.resolution, asked.ways(shown))
     print_note(str(todo))
-    _work_ahead(todo, asked, shown)
+    work_ahead(todo, asked.ways(shown))
     return verification.verify(mechanism, asked.resolution, reduce, compute, _tell_verdicts if todo.jobs else None)
-
-
-def _work_ahead(todo: Plan, asked: _Request, shown: ProgressBar) -> None:
-    shown.follow([todo.together], todo.lanes)
-    work_ahead(todo, asked.ways(shown), _notice)
 
 
 def _tell_verdicts(rows: tuple[verification.Row, ...]) -> None:
@@ -267,10 +230,6 @@ def calibrate(
     return CommandResult(mechanism, lambda: found, lambda: tables, warnings=warnings)
 
 
-def _notice(finding: Finding) -> None:
-    print_warning(str(finding))
-
-
 def _size(memory: str | None) -> float | None:
     """The size of memory stated [bytes]."""
     if memory is None:
@@ -284,7 +243,7 @@ def _size(memory: str | None) -> float | None:
 def _solids(asked: _Request, shown: ProgressBar) -> Solids:
     """Reduces with its progress shown."""
     require_installed()
-    reduce = solids(asked.ways(shown), _notice)
+    reduce = solids(asked.ways(shown))
 
     def reduce_with_progress(mechanism: Mechanism, reduction: Reduction) -> Parts:
         shown.about = f"order {reduction.fineness.order}, "
@@ -294,7 +253,7 @@ def _solids(asked: _Request, shown: ProgressBar) -> Solids:
 
 
 def _hinges(asked: _Request, shown: ProgressBar) -> Hinges:
-    compute = hinges(asked.resolution.accuracy, asked.resolution.order, asked.ways(shown), _notice)
+    compute = hinges(asked.resolution.accuracy, asked.resolution.order, asked.ways(shown))
 
     def followed(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
         shown.about = "hinges, "
@@ -319,7 +278,7 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
     reduce, alone, ways = _solids(asked, shown), units_alone(mechanism), asked.ways(shown)
     todo = reduction_plan(alone, asked.resolution, ways)
     bare = todo.jobs > 0
-    _work_ahead(reduction_plan(alone, asked.resolution, ways, bare=True) if bare else todo, asked, shown)
+    work_ahead(reduction_plan(alone, asked.resolution, ways, bare=True) if bare else todo, asked.ways(shown))
     found = verification.units_solid(mechanism, asked.resolution, reduce, bare=bare)
 
     def tables() -> Iterator[Table | None]:
@@ -339,7 +298,7 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
 
 def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
     reduce = _solids(asked, shown)
-    _work_ahead(reduction_plan([with_drawn_parts(mechanism)], asked.resolution, asked.ways(shown)), asked, shown)
+    work_ahead(reduction_plan([with_drawn_parts(mechanism)], asked.resolution, asked.ways(shown)), asked.ways(shown))
     found = verification.stage_solid(mechanism, asked.resolution, reduce)
     stage = found.result
 

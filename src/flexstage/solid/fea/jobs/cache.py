@@ -8,10 +8,11 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -36,6 +37,7 @@ class Kind:
 
 SUPERELEMENTS = Kind(".superelement", "superelement", "solver.reduce")
 HINGES = Kind(".hinge", "6x6", "hinges.hinge")
+SOUND = Kind(".sound", "mark of sound outlines", "geometry.contact")
 
 
 @dataclass(frozen=True)
@@ -49,12 +51,13 @@ class Cache(CheckedFields):
     limit: float = 4e9
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
-    """What the cache holds, a superelement, a 6x6 or nothing, and what is to be said about it."""
+Notice: TypeAlias = Callable[[Finding], None]
+"""Is called with what stops nothing: a file of the cache is damaged, or could not be kept."""
 
-    element: Any
-    notices: tuple[Finding, ...] = ()
+
+def warn(finding: Finding) -> None:
+    """Issue a finding as a Python warning."""
+    warnings.warn(str(finding), stacklevel=2)
 
 
 def folder_of(cache: Cache) -> Path:
@@ -63,9 +66,7 @@ def folder_of(cache: Cache) -> Path:
     >>> folder_of(Cache(Path("/tmp/superelements"))).name
     'superelements'
     """
-    if cache.folder is not None:
-        return cache.folder
-    return cache_folder()
+    return cache_folder() if cache.folder is None else cache.folder
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
@@ -83,28 +84,25 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
     return state.hexdigest()[:32]
 
 
-def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS) -> Found:
-    """Look a component or a hinge up. `where` names it in what is said about files that are damaged or of other versions.
+def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
+    """Return the superelement or the 6x6 of a key, `None` where there is none. `where` names it in the notice of a damaged file.
 
-    >>> find(Cache(Path("/nowhere")), "key", "lever").element is None
+    >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True
     """
     path = _path(cache, key, kind)
     try:
-        data = path.read_bytes()
+        outcome = from_bytes(path.read_bytes(), key, versions(kind.method))
     except FileNotFoundError:
-        return Found(None, _other_versions(path, key, where, kind))
+        return None
     except OSError as error:
-        return Found(None, (Finding(where, f"its {kind.noun} {path} cannot be read ({error.strerror})", _RECOMPUTED),))
-    outcome = from_bytes(data, key, versions(kind.method))
+        outcome = f"it cannot be read ({error.strerror})"
     if isinstance(outcome, str):
-        return Found(None, (Finding(where, f"its {kind.noun} {path} is not used: {outcome}", _RECOMPUTED),))
+        notice(Finding(where, f"its {kind.noun} {path} is not used: {outcome}", "It is computed again and replaced"))
+        return None
     with contextlib.suppress(OSError):
         os.utime(path)
-    return Found(outcome)
-
-
-_RECOMPUTED = "It is computed anew and replaced"
+    return outcome
 
 
 def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
@@ -116,11 +114,11 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
     return _path(cache, key, kind).is_file()
 
 
-def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEMENTS) -> tuple[Finding, ...]:
-    """Keep the bytes of a file, whole or not at all. Tells why it could not.
+def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
+    """Keep the bytes of a file, whole or not at all.
 
-    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"")[0].where
-    'lever'
+    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"", notice=lambda finding: print(finding.where))
+    lever
     """
     path = _path(cache, key, kind)
     try:
@@ -131,8 +129,7 @@ def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEM
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
         what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
         advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
-        return (Finding(where, what, advice),)
-    return ()
+        notice(Finding(where, what, advice))
 
 
 def _remove_old(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
@@ -154,11 +151,3 @@ def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
 
 def _path(cache: Cache, key: str, kind: Kind) -> Path:
     return folder_of(cache) / f"{key}-{versions(kind.method).digest}{kind.suffix}"
-
-
-def _other_versions(path: Path, key: str, where: str, kind: Kind) -> tuple[Finding, ...]:
-    others = len(list(path.parent.glob(f"{key}-*{kind.suffix}"))) if path.parent.is_dir() else 0
-    if not others:
-        return ()
-    what = f"the cache {path.parent} holds its {kind.noun} of other versions only ({others}), here is {versions(kind.method)}"
-    return (Finding(where, what, "It is computed anew; the others stay for the versions they belong to"),)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from flexstage.base.finding import DesignError, Finding
@@ -42,7 +42,7 @@ class HingeJob(StoredJob):
 
     def seconds(self, _counts: Counts | None = None) -> float:
         """What hinges usually take [s]: several solves, the more the higher the order may rise."""
-        return _USUAL_SECONDS * (self.asked.orders[1] - 2)
+        return _USUAL_SECONDS * max(1, self.asked.orders[1] - 2)
 
     def needed(self, counts: Counts) -> float:
         """Memory of the first solves [bytes]; at higher orders as much is taken as there is."""
@@ -68,31 +68,22 @@ class HingeJob(StoredJob):
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None
 
 
-def hinges_from_cache(
-    forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways, notice: Callable[[Finding], None] | None = None
-) -> dict[str, HingeSolid]:
+def hinges_from_cache(forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
     """The 6x6 of hinges by name, from the cache, else computed in processes of their own, side by side, each kept as soon as it is done.
 
-    The solver is needed only for those that are not there. `notice` is told of a file that is damaged, and of one that could not be kept;
-    neither is fatal. Raises `DesignError` with all that could not be computed.
+    The solver is needed only for those that are not there. Raises `DesignError` with all that could not be computed.
 
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}
     """
     jobs = hinge_jobs(forms, asked)
-    found, notices = obtain(jobs, ways)
-    for each in notices:
-        (notice or _ignore)(each)
+    found = obtain(jobs, ways)
     return {job.name: found[job.key] for job in jobs}
 
 
 def hinge_jobs(forms: Mapping[str, HingeForm], asked: Accuracy) -> list[HingeJob]:
     """A job a hinge."""
     return [HingeJob(_key(form, asked), name, form, asked) for name, form in forms.items()]
-
-
-def _ignore(_finding: Finding) -> None:
-    """Nobody is told."""
 
 
 def _key(form: HingeForm, asked: Accuracy) -> str:
