@@ -36,10 +36,10 @@ from flexstage.mechanism.mechanism import (
     Mechanism,
     Probe,
     Stop,
-    every_body,
     every_link,
     posed,
 )
+from flexstage.mechanism.references import references
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, PlacedSolid, owner_of, pierce
 from flexstage.parts.compliance_matrix import Joint
@@ -328,20 +328,11 @@ def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     >>> print(*unknown_names(Mechanism("", links={"strut": Link(("ground", "platform"), "wire")})))
     links.strut.part: there is no part "wire". There are none.
     """
-    parts, materials = mechanism.parts, mechanism.materials
-    named: list[tuple[str, str, str | None, Mapping[str, object]]] = []
-    for name, part in parts.items():
-        named += [(f"parts.{name}.material", "material", material_of(part), materials)]
-        named += [(f"parts.{name}.counter", "material", counter_of(part), materials)]
-    for where, body in every_body(mechanism):
-        named += [(f"{where}.solids.{name}.material", "material", solid.material, materials) for name, solid in body.solids.items()]
-    named += [(f"placements.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.placements.items()]
-    for name, probe in mechanism.gauges.items():
-        named += [] if isinstance(probe, GaugeSum) else [(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)]
-    named += [(f"{where}.part", "part", link.part, parts) for where, link in every_link(mechanism)]
-    for where, kind, wanted, known in named:
-        if wanted is not None and wanted not in known:
-            yield Finding(where, f'there is no {kind} "{wanted}"', suggest_nearest(wanted, known))
+    parts = mechanism.parts
+    for section in ("parts", "bodies", "links", "units", "placements", "gauges"):
+        for where, home, name in references(getattr(mechanism, section), section):
+            if name not in getattr(mechanism, home):
+                yield Finding(where, f'there is no {home.removesuffix("s")} "{name}"', suggest_nearest(name, getattr(mechanism, home)))
     for where, link in every_link(mechanism):
         yield from _port_findings(where, link, parts) if link.part in parts else ()
 
