@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
@@ -21,6 +21,8 @@ SECTIONS = {
 """Section of the entries that a field of this name refers to."""
 BODIES = ("body", "base", "of", "joins")
 """Fields that refer to bodies."""
+FILES = ("file", "stiffness_file", "mass_file", "damping_file")
+"""Fields of parts and outlines that name files."""
 
 
 def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
@@ -43,26 +45,28 @@ def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
                 yield from references(item, f"{where}.{name}")
 
 
-def renamed(value: Any, change: Callable[[str, str], str]) -> Any:
-    """Return a value with `change(field, name)` in the place of each name to which it refers.
+def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str]) -> Any:
+    """Return a value with `change(field, text)` in the place of each text in a field of these names; without any, the value itself.
 
     >>> from flexstage.mechanism.mechanism import Link
-    >>> renamed(Link(("ground", "platform"), "leaf"), lambda field, name: f"fine/{name}").joins
+    >>> renamed(Link(("ground", "platform"), "leaf"), BODIES, lambda field, name: f"fine/{name}").joins
     ('fine/ground', 'fine/platform')
     """
-    if isinstance(value, Mapping):
-        return Table({key: renamed(item, change) for key, item in value.items()})
+    if isinstance(value, Table):
+        new = {key: renamed(item, names, change) for key, item in value.items()}
+        return Table(new) if any(new[key] is not item for key, item in value.items()) else value
     if not isinstance(value, Description):
         return value
     own = {each.name: getattr(value, each.name) for each in fields(value) if each.init}  # type: ignore[arg-type]
-    return replace(value, **{name: _changed(name, item, change) for name, item in own.items()})
+    new = {name: _changed(name, item, change) if name in names else item for name, item in own.items()}
+    new = {name: renamed(item, names, change) for name, item in new.items()}
+    new = {name: item for name, item in new.items() if item is not own[name]}
+    return replace(value, **new) if new else value
 
 
 def _changed(name: str, item: Any, change: Callable[[str, str], str]) -> Any:
-    if (name not in SECTIONS and name not in BODIES) or not item:
-        return renamed(item, change)
-    if isinstance(item, Mapping):
+    if isinstance(item, Table):
         return Table({key: change(name, each) for key, each in item.items()})
     if isinstance(item, tuple):
         return tuple(change(name, each) for each in item)
-    return change(name, item) if isinstance(item, str) else renamed(item, change)
+    return change(name, item) if item and isinstance(item, str) else item

@@ -28,7 +28,7 @@ from flexstage.mechanism.mechanism import (
     Mechanism,
     Probe,
 )
-from flexstage.mechanism.references import BODIES, renamed
+from flexstage.mechanism.references import BODIES, SECTIONS, renamed
 from flexstage.parts.body import Body, Inertia, owner_of
 from flexstage.parts.mass import tensor
 from flexstage.parts.material import Material
@@ -174,7 +174,7 @@ class _Names:
                 return text if field_name == "joins" and text in own else self.body(text)
             return f"{self.name}/{text}"
 
-        return renamed(item, change)
+        return renamed(item, (*SECTIONS, *BODIES), change)
 
 
 def _placed(entries: Mapping[str, Any], outer: Frame) -> Iterator[tuple[str, Any]]:
