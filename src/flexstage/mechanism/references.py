@@ -52,21 +52,24 @@ def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str
     >>> renamed(Link(("ground", "platform"), "leaf"), BODIES, lambda field, name: f"fine/{name}").joins
     ('fine/ground', 'fine/platform')
     """
+    return transformed(value, lambda field, leaf: change(field, leaf) if field in names and leaf and isinstance(leaf, str) else leaf)
+
+
+def transformed(value: Any, change: Callable[[str, Any], Any], field: str = "") -> Any:
+    """Return a value with `change(field, leaf)` in the place of all that it is made of in the end; what stays is kept as it is.
+
+    >>> transformed((1.0, (2.0, 3.0)), lambda _, number: 2.0 * number)
+    (2.0, (4.0, 6.0))
+    """
+    if isinstance(value, Description):
+        own = {each.name: getattr(value, each.name) for each in fields(value) if each.init}  # type: ignore[arg-type]
+        new = {name: transformed(item, change, name) for name, item in own.items()}
+        new = {name: item for name, item in new.items() if item is not own[name]}
+        return replace(value, **new) if new else value  # type: ignore[type-var]
     if isinstance(value, Table):
-        new = {key: renamed(item, names, change) for key, item in value.items()}
-        return Table(new) if any(new[key] is not item for key, item in value.items()) else value
-    if not isinstance(value, Description):
-        return value
-    own = {each.name: getattr(value, each.name) for each in fields(value) if each.init}  # type: ignore[arg-type]
-    new = {name: _changed(name, item, change) if name in names else item for name, item in own.items()}
-    new = {name: renamed(item, names, change) for name, item in new.items()}
-    new = {name: item for name, item in new.items() if item is not own[name]}
-    return replace(value, **new) if new else value
-
-
-def _changed(name: str, item: Any, change: Callable[[str, str], str]) -> Any:
-    if isinstance(item, Table):
-        return Table({key: change(name, each) for key, each in item.items()})
-    if isinstance(item, tuple):
-        return tuple(change(name, each) for each in item)
-    return change(name, item) if item and isinstance(item, str) else item
+        entries = {key: transformed(item, change, field) for key, item in value.items()}
+        return Table(entries) if any(entries[key] is not item for key, item in value.items()) else value
+    if isinstance(value, tuple):
+        items = tuple(transformed(item, change, field) for item in value)
+        return items if any(item is not old for item, old in zip(items, value, strict=True)) else value
+    return change(field, value)
