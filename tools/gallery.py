@@ -5,7 +5,6 @@ What a case says of itself is told once: in the comment on top of its file, or i
 
 from __future__ import annotations
 
-import inspect
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,7 +13,7 @@ from threadpoolctl import threadpool_limits
 
 import flexstage as fs
 from flexstage.analysis.assessment.judge import judge
-from flexstage.cases.case import Case, FunctionCase, file_text
+from flexstage.cases.case import Case, file_text
 from flexstage.cases.registry import CASES, case
 from flexstage.models.theory import Model
 from flexstage.show.command.design import elastic_model
@@ -45,22 +44,18 @@ def _parts(name: str, found: Case) -> Iterator[str]:
     yield f"{found.summary[0].upper()}{found.summary[1:]}."
     yield f"![{found.summary}](pictures/case-{name}.png)"
     yield f"<!-- turn {name} -->"
-    yield paragraph(_words(name, found))
+    yield paragraph(_words(name))
     yield table(("", ""), _numbers(name))
     more = ", compared under [stages of others](validation/published.md)" if name in _PRINTED else ""
-    yield f"Drawn in [{_source(name, found).name}](../{_source(name, found).as_posix()}){more}."
+    yield f"Drawn in [{_source(name).name}](../{_source(name).as_posix()}){more}."
 
 
-def _source(name: str, found: Case) -> Path:
-    if isinstance(found, FunctionCase):
-        return Path("src", *found.function.__module__.split(".")).with_suffix(".py")
+def _source(name: str) -> Path:
     return Path("src/flexstage/cases/files", f"{name}.toml")
 
 
-def _words(name: str, found: Case) -> str:
-    """What the case says of itself, but its first line where that only names it."""
-    if isinstance(found, FunctionCase):
-        return (inspect.getdoc(inspect.getmodule(found.function)) or "").partition("\n\n")[2].replace("\n", " ")
+def _words(name: str) -> str:
+    """What the file of the case says of it."""
     lines = file_text(name).partition("\nformat")[0].splitlines()
     return " ".join(re.sub(r"^# ?", "", line) for line in lines)
 

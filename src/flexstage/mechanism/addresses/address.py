@@ -48,7 +48,11 @@ def get(mechanism: Mechanism, address: str) -> Any:
     >>> get(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "parts.wire.length")
     0.03
     """
-    place = locate(mechanism, address)
+    return value_at(mechanism, locate(mechanism, address))
+
+
+def value_at(mechanism: Mechanism, place: Place) -> Any:
+    """Return the value at a place, overrides applied."""
     value: Any = mechanism
     if place.misaligned:
         value = misalignment_of(mechanism.overrides, place.owners[0])
@@ -194,7 +198,12 @@ def quantity_of(mechanism: Mechanism, address: str) -> Quantity:
     >>> quantity_of(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").shown
     'mm'
     """
-    quantity = locate(mechanism, address).node.measures
+    return quantity_at(locate(mechanism, address), address)
+
+
+def quantity_at(place: Place, address: str) -> Quantity:
+    """Return the quantity of what is at a place. Raises `DesignError` where that is no number."""
+    quantity = place.node.measures
     if quantity is None:
         raise refuse(address, "this is not a number", "Address one of its numbers")
     return quantity

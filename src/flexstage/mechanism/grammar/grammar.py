@@ -34,13 +34,12 @@ from flexstage.mechanism.grammar.node import (
     Node,
     NumberNode,
     Reader,
+    RowNode,
     TextNode,
     VectorNode,
     Wanted,
     WholeNode,
     Writer,
-    every,
-    is_row,
     join,
     kind,
     meaning,
@@ -104,7 +103,7 @@ _ELSEWHERE = "A kind that another package offers is known where that package is 
 
 
 @dataclass(frozen=True)
-class ListNode(Node):
+class ListNode(RowNode):
     """Texts, choices, numbers or tables in a row, `length` of them (None: any number)."""
 
     item: Node
@@ -115,15 +114,14 @@ class ListNode(Node):
         """A text as it may stand in a file."""
         return f"[{', '.join([self.item.example] * (self.length or 1))}]"
 
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The items."""
-        if not is_row(self, raw, self.length, where, reader):
-            return BAD
-        return every([reader.read(self.item, part, where) for part in raw])
+    @property
+    def size(self) -> int | None:
+        """How many it states."""
+        return self.length
 
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """The items."""
-        return [writer.write(self.item, item, where) for item in value]
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its values, all where it is."""
+        return (("", self.item, part) for part in row)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An array."""
@@ -144,19 +142,13 @@ class ListNode(Node):
 class NumbersNode(ListNode):
     """Numbers or points in a row, any number of them, each of which has an address: its place, counted from nought."""
 
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The numbers."""
-        if not is_row(self, raw, self.length, where, reader):
-            return BAD
-        return every([reader.read(self.item, part, f"{where}.{place}") for place, part in enumerate(raw)])
-
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """The numbers."""
-        return [writer.write(self.item, item, f"{where}.{place}") for place, item in enumerate(value)]
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its values by their place."""
+        return ((str(place), self.item, part) for place, part in enumerate(row))
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its items by place."""
-        return ((str(place), self.item, item) for place, item in enumerate(value))
+        """Its values by their place."""
+        return self.parts(value)
 
     def child(self, value: Any, name: str) -> Node:
         """A number."""

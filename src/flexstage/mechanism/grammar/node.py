@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.units.expression import UnknownAmountError
 from flexstage.base.units.quantity import (
     COMPLIANCE,
@@ -191,10 +191,20 @@ class Node:
 
     def parse(self, text: str, where: str) -> Any:
         """The value that the text of an assignment means (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
-        raise refuse(where, "it has several values", "Set one of them, for example its x")
+        if not self.single:
+            raise refuse(where, "it has several values", "Set one of them, for example its x")
+        reader = Reader(Catalogue((), {}))
+        value = reader.read(self, text, where)
+        require(reader.findings)
+        return value
 
     def fit(self, value: Any, where: str) -> Any:
-        """A frozen value as it is kept; raises `DesignError` at `where` if it is of another kind."""
+        """A frozen value as it is kept, whole numbers as floats; raises `DesignError` at `where` if it is of another kind."""
+        if not (self.single or self.components):
+            return value
+        value = _floats(value)
+        if expected := self.wanted(value):
+            raise refuse(where, f"found {value!r} where {expected[0]} is expected", expected[1])
         return value
 
     def check(self, value: Any, where: str) -> Iterator[Finding]:
@@ -280,16 +290,6 @@ class NumberNode(Node):
         """A float, a complex number or an array of them."""
         return None if _is_number(value) else (self.quantity.noun, "Give a number or an array in SI units")
 
-    def parse(self, text: str, where: str) -> float:
-        """The number in SI."""
-        return parse(text, self.quantity, where=where)
-
-    def fit(self, value: Any, where: str) -> Any:
-        """Whole numbers become floats."""
-        if isinstance(value, bool) or not isinstance(value, (int, float, complex, np.ndarray)):
-            raise refuse(where, f"found {value!r} where a number is expected", "Give a number or an array in SI units")
-        return float(value) if isinstance(value, int) else value
-
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
         """The number itself."""
         if value is not None:
@@ -332,8 +332,35 @@ class NamedNode(Node):
         yield where, value.value, self.child(value, "value")
 
 
+class RowNode(Node):
+    """Several values in brackets."""
+
+    @property
+    def size(self) -> int | None:
+        """How many there are; absent: any number."""
+        return None
+
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Where each value of a row is, from where the row is, its node and itself."""
+        raise NotImplementedError
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """One value for each."""
+        if not is_row(self, raw, self.size, where, reader):
+            return BAD
+        return every([reader.read(node, part, join(where, name) if name else where) for name, node, part in self.parts(raw)])
+
+    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
+        """One form for each."""
+        return [writer.write(node, part, join(where, name) if name else where) for name, node, part in self.parts(value)]
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """What it holds."""
+        return self.parts(value)
+
+
 @dataclass(frozen=True)
-class VectorNode(Node):
+class VectorNode(RowNode):
     """Numbers by component: x, y, z; or the rows of a matrix."""
 
     items: tuple[Node, ...]
@@ -349,16 +376,6 @@ class VectorNode(Node):
         """A text as it may stand in a file."""
         return f"[{', '.join(item.example for item in self.items)}]"
 
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The components in SI."""
-        if not is_row(self, raw, len(self.items), where, reader):
-            return BAD
-        return every([reader.read(item, part, f"{where}.{name}") for name, item, part in zip(COMPONENTS, self.items, raw, strict=False)])
-
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """The form of each."""
-        return [writer.write(item, part, f"{where}.{name}") for name, item, part in zip(COMPONENTS, self.items, value, strict=False)]
-
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """As many texts."""
         return row_schema([item.schema(definitions) for item in self.items])
@@ -367,17 +384,18 @@ class VectorNode(Node):
         """A tuple of that length."""
         return _wanted_row(value, len(self.items))
 
-    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+    @property
+    def size(self) -> int:
+        """As many as components."""
+        return len(self.items)
+
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its components."""
-        return zip(COMPONENTS, self.items, value, strict=False)
+        return zip(COMPONENTS, self.items, row, strict=False)
 
     def child(self, value: Any, name: str) -> Node:
         """A component."""
         return self.items[COMPONENTS.index(name)]
-
-    def fit(self, value: Any, where: str) -> Any:
-        """Whole numbers become floats."""
-        return _fit_row(value, len(self.items), where)
 
 
 @dataclass(frozen=True)
@@ -431,16 +449,6 @@ class DirectionNode(Node):
     def child(self, value: Any, name: str) -> Node:
         """A component."""
         return NumberNode(RATIO)
-
-    def parse(self, text: str, where: str) -> Any:
-        """A direction by name."""
-        if text not in DIRECTIONS:
-            raise refuse(where, f'found "{text}"', f"Write one of {', '.join(DIRECTIONS)}, or set its components")
-        return DIRECTIONS[text]
-
-    def fit(self, value: Any, where: str) -> Any:
-        """Whole numbers become floats."""
-        return _fit_row(value, None, where)
 
 
 def _rows(*quantities: Quantity) -> tuple[VectorNode, ...]:
@@ -568,16 +576,6 @@ class TextNode(Node):
         """
         return None if isinstance(value, str) else ("a text", "Give a str")
 
-    def parse(self, text: str, where: str) -> str:
-        """The text itself."""
-        return text
-
-    def fit(self, value: Any, where: str) -> Any:
-        """A text."""
-        if not isinstance(value, str):
-            raise refuse(where, f"found {value!r} where a name is expected", "Give a text")
-        return value
-
 
 @dataclass(frozen=True)
 class ChoiceNode(Node):
@@ -615,12 +613,6 @@ class ChoiceNode(Node):
     def wanted(self, value: Any) -> Wanted:
         """A member of the enumeration."""
         return None if isinstance(value, self.choices) else (f"a {self.choices.__name__}", f"Give a member of {self.choices.__name__}")
-
-    def parse(self, text: str, where: str) -> Any:
-        """The choice of that name."""
-        if text not in self.words:
-            raise refuse(where, f'found "{text}"', f"It is one of {', '.join(self.words)}")
-        return self.words[text]
 
     def fit(self, value: Any, where: str) -> Any:
         """The choice itself, or that of a name."""
@@ -763,10 +755,11 @@ def _wanted_row(value: Any, count: int, *, fits: bool = True) -> Wanted:
     return f"a row of {count} numbers", "Give a tuple of numbers or arrays in SI units"
 
 
-def _fit_row(value: Any, count: int | None, where: str) -> Any:
-    if not isinstance(value, tuple) or (count is not None and len(value) != count):
-        raise refuse(where, f"found {value!r} where components are expected", "Give one number for each component")
-    return tuple(float(item) if isinstance(item, int) else item for item in value)
+def _floats(value: Any) -> Any:
+    """Numbers and rows of numbers, whole ones as floats."""
+    if isinstance(value, tuple):
+        return tuple(map(_floats, value))
+    return float(value) if type(value) is int else value
 
 
 def _limits(bound: Bound | None) -> dict[str, float]:
