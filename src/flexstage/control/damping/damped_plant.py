@@ -15,8 +15,8 @@ from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.damping.force_feedback import ForceFeedback, damping_of_pair, most_damping
 from flexstage.control.damping.legs import Leg, Pairs
 from flexstage.control.plant_models.plants import ADDED, SENSED, Plant
-from flexstage.control.plant_models.reduction import resonances
-from flexstage.control.systems.system import System, connect, rename, select
+from flexstage.control.plant_models.reduction import residualise, resonances
+from flexstage.control.systems.system import connect, rename, select
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
@@ -123,18 +123,9 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
     """The legs with the axial stiffness that a plant's modes feel: stack and hinges in series, tension per stroke far above these modes."""
     forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
-    direct = _direct(given, forces)
+    slow = np.array([not name.startswith("amplifier.") for name in given.states])
+    direct = np.diag(residualise(forces, slow).D)
     return tuple(replace(each, stiffness=abs(float(value))) for each, value in zip(legs, direct, strict=True))
-
-
-def _direct(given: Plant, forces: System) -> Array:
-    """Tension per stroke (n,) at infinite frequency, amplifiers' lags aside."""
-    if not any(name.startswith("amplifier.") for name in given.states):
-        return np.diag(forces.D)
-    kept = np.array([not name.startswith("amplifier.") for name in given.states])
-    fast = ~kept
-    gains = -np.linalg.solve(forces.A[np.ix_(fast, fast)], forces.B[fast])
-    return np.diag(forces.D + forces.C[:, fast] @ gains)
 
 
 def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:

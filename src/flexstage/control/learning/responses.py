@@ -10,7 +10,6 @@ from flexstage.base.number import Array
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System, select
 
 _AT_REST = 1e-4
@@ -27,7 +26,7 @@ def readings(plant: Plant, control: System, frequencies: Array, offset: float = 
     given = plant.hardware
     slower = replace(given, rate=(given.rate or np.inf) / (1.0 + offset), delay=given.delay * (1.0 + offset))
     moved = replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
-    P, names = resolvent(moved).at(frequencies), plant.coordinates.names
+    P, names = moved.transfer(frequencies), plant.coordinates.names
     parts = {kind: _part(control, kind, names, frequencies) for kind in ("error", "pose", "reference")}
     back = P @ (parts["error"] - parts["pose"])
     return np.linalg.solve(np.eye(len(names)) + back, P @ (parts["error"] + parts["reference"]))
@@ -38,7 +37,7 @@ def _part(control: System, kind: str, names: tuple[str, ...], frequencies: Array
     known = [name for name in wanted if name in control.input_names]
     found = np.zeros((len(frequencies), len(control.outputs), len(names)), complex)
     if known:
-        seen = resolvent(select(control, known, control.output_names)).at(frequencies)
+        seen = select(control, known, control.output_names).transfer(frequencies)
         found[:, :, [wanted.index(name) for name in known]] = seen
     return found
 
@@ -47,7 +46,7 @@ def motions(closed: Loop, frequencies: Array) -> Array:
     """Responses (f, k, k) from reference to the true motion against the ground."""
     names = closed.plant.coordinates.names
     whole = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in names])
-    return resolvent(whole).at(frequencies)
+    return whole.transfer(frequencies)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,6 @@ from flexstage.control.plant_models.reduction import mode_names
 from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins, feedback_response, reference_response
 from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.curves import dense_frequencies
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.sampling import split_delay
 from flexstage.control.systems.system import select
 from flexstage.spatial.frame import COMPONENTS
@@ -119,7 +118,7 @@ def _contributions(whole: Plant, kept: Array, closed: Loop) -> _Contributions:
     lines = np.unique(np.concatenate([lines, own[own > lines[0]]]))
     place = np.clip(np.searchsorted(lines, own), 0, len(lines) - 1)
     seen = LoopLines(lines, loop.scale, feedback_response(closed.controller, loop, lines))
-    plant = loop.pose @ resolvent(select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges])).at(lines)
+    plant = loop.pose @ select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges]).transfer(lines)
     back, forward = seen.control @ seen.sensitivity(plant), reference_response(closed.controller, loop, lines)
     forward = forward - back @ plant @ forward
     held = poles.held(lines, hardware)

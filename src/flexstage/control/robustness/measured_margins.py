@@ -19,7 +19,6 @@ from flexstage.control.plant_models.measured_plant import channel_places
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins, feedback_response
 from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.records.record import Responses
@@ -119,7 +118,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     values = whole.margins((loop.pose @ response) * late[:, None, None])
     sure = bool(np.all(np.isfinite(known.deviations)))
     drawn = _draws(whole, loop, response, known.deviations[chosen] * scale, late) if sure else None
-    models = [whole.margins(resolvent(pose_plant(plant)).at(lines)) for plant in (closed.plant, predicted)]
+    models = [whole.margins(pose_plant(plant).transfer(lines)) for plant in (closed.plant, predicted)]
     names = loop.names
     low, high = (None, None) if drawn is None else np.quantile([each.sizes for each in drawn], _ENDS, axis=0)
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.plant_models.coordinates import Coordinates
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System
 
 _NOTHING = 1e-300
@@ -76,7 +75,7 @@ def reference_response(controller: System, loop: Coordinates, lines: Array) -> A
 
 
 def _response(controller: System, loop: Coordinates, lines: Array, signs: dict[str, float]) -> Array:
-    whole = resolvent(controller).at(lines)
+    whole = controller.transfer(lines)
     found = np.zeros((len(lines), len(loop.actuators), len(loop.names)), dtype=complex)
     order = [controller.output_names.index(f"command.{name}") for name in loop.actuators]
     for kind, sign in signs.items():

@@ -94,7 +94,7 @@ def from_file(path: str | os.PathLike[str]) -> Table:
     chosen = in_si(stated)
     wanted = dict(zip((whole.names[0], *COMPONENTS), ("s", *TWIST_UNITS), strict=True))
     require(
-        Finding(f"{place}: {after.name}", f'its unit is "{before.unit}"', f'Give it in a unit of {wanted[after.name]}, as "time [s], x [um]"')
+        Finding(f"{place}: {after.name}", f'its unit is "{before.unit}"', f'Give it in a unit of {wanted[after.name]}, as "x [um]"')
         for before, after in zip(stated.channels, chosen.channels, strict=True)
         if after.unit != wanted[after.name]
     )

@@ -17,7 +17,6 @@ from flexstage.control.controllers.family import Place
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, estimator, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
@@ -239,7 +238,7 @@ def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
     """It and its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
     if notch not in seen.kept:
         found = notch.system(seen.step)
-        seen.kept[notch] = found, resolvent(found).at(seen.frequencies)[:, 0, 0]
+        seen.kept[notch] = found, found.transfer(seen.frequencies)[:, 0, 0]
     return seen.kept[notch]
 
 
@@ -251,7 +250,7 @@ def _sampled_response(law: Law, seen: View) -> Array | None:
         return None
     entry = found.B[:, [0]] - found.B[:, [1]]
     alone = replace(found, B=entry, D=found.D[:, [0]] - found.D[:, [1]], inputs=found.inputs[:1])
-    return resolvent(alone).at(seen.frequencies)[:, 0, 0]
+    return alone.transfer(seen.frequencies)[:, 0, 0]
 
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
@@ -347,7 +346,7 @@ class _Designer:
     spec: TuningSpec
     expected: Disturbances
     observer: Array
-    responses: Resolvent
+    estimator: System
 
     @cached_property
     def estimates(self) -> Array:
@@ -356,7 +355,7 @@ class _Designer:
 
     def estimates_at(self, frequencies: Array) -> Array:
         """The same (s, f, k + n) at other frequencies [Hz]."""
-        found, count = self.responses.at(frequencies), len(self.seen.loops.names)
+        found, count = self.estimator.transfer(frequencies), len(self.seen.loops.names)
         found[..., :count] = found[..., :count] @ np.linalg.inv(self.seen.loops.sense)
         return np.ascontiguousarray(np.moveaxis(found, 0, 1))
 
@@ -374,7 +373,7 @@ def _designer(seen: View, spec: TuningSpec, trust: float) -> _Designer:
     key = (looser.strokes, *looser.gauges.items())
     if key not in seen.kept:
         observer = observer_gain(model, coordinates, looser)
-        seen.kept[key] = _Designer(seen, spec, looser, observer, resolvent(estimator(model, observer)))
+        seen.kept[key] = _Designer(seen, spec, looser, observer, estimator(model, observer))
     return seen.kept[key]
 
 

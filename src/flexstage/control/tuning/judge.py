@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System
 from flexstage.control.tuning.spec import Judgement
 from flexstage.control.tuning.view import View
@@ -95,7 +94,7 @@ def open_gains(seen: View, control: System) -> Array:
     entry = selector @ np.linalg.inv(seen.loops.sense)
     inputs = tuple(Channel(name, "m") for name in seen.loops.names)
     total = replace(control, B=control.B @ entry, D=control.D @ entry, inputs=inputs)
-    return seen.responses @ resolvent(total).at(seen.frequencies)
+    return seen.responses @ total.transfer(seen.frequencies)
 
 
 def closed_growth(plant: System, control: System) -> float:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System
 from flexstage.control.tuning.judge import first_rise, highest_gain
 from flexstage.control.tuning.search import Field
@@ -51,12 +50,11 @@ def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
     (True, 0.0, True)
     """
     count, coordinates = len(within.seen.loops.names), within.seen.loops.coordinates
-    responses, eye = resolvent(_entered(within.seen, control)), np.eye(count)
-    back = replace(responses, system=_first_inputs(responses.system, count), entry=responses.entry[:, :count])
-    every = gain * back.at(within.frequencies.ravel()).reshape(*within.frequencies.shape, -1, count)
+    entered, eye = _entered(within.seen, control), np.eye(count)
+    every = gain * entered.transfer(within.frequencies.ravel(), slice(count)).reshape(*within.frequencies.shape, -1, count)
     opened = within.strokes @ every
     left = np.linalg.inv(eye + opened)
-    slow = gain * responses.at(within.lines[1:])
+    slow = gain * entered.transfer(within.lines[1:])
     following = np.linalg.solve(eye + within.slow_strokes @ slow[..., :count], within.slow_strokes @ slow[..., count:])
     steps, interval = _steps(np.einsum("whkk->whk", following)), 0.5 / float(within.lines[-1])
     lengths = coordinates.scale[:, None] * np.linalg.inv(within.seen.loops.sense)
@@ -73,10 +71,6 @@ def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
         overshoot=np.max(steps, axis=(0, 1)) - 1.0,
         delay_margin=np.array([_delay_margin(1.0 / own[0, :, k] - 1.0, within.frequencies[0]) for k in range(count)]),
     )
-
-
-def _first_inputs(system: System, count: int) -> System:
-    return replace(system, B=system.B[:, :count], D=system.D[:, :count], inputs=system.inputs[:count])
 
 
 def _entered(seen: View, control: System) -> System:

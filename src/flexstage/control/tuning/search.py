@@ -17,7 +17,6 @@ from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import select
 from flexstage.control.tuning.fit import STIFF, Bounds, OneLoop, Squares, descend, keeps, sum_squares
 from flexstage.control.tuning.laws import PI_FAMILY, PID_FAMILY
@@ -272,7 +271,7 @@ def _disturbed(seen: View, frequencies: Array, floor: Mapping[str, Spectrum]) ->
     names = [f"relative.{name}" for name in seen.loops.coordinates.names]
     if not floor:
         return _DRIFT * np.eye(len(names))[None] / frequencies[:, None, None]
-    moved = resolvent(select(seen.plant.system, list(floor), names)).at(frequencies)
+    moved = select(seen.plant.system, list(floor), names).transfer(frequencies)
     shaken = np.sqrt(np.stack([spectrum.at(frequencies) for spectrum in floor.values()], axis=-1))
     return seen.loops.sense @ moved * shaken[:, None, :]
 

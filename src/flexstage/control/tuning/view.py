@@ -12,7 +12,6 @@ from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
 _PLAIN, _PER_DECADE = 400, 60
@@ -68,13 +67,9 @@ class View:
         """The loops' own responses (k,) at one frequency [Hz]."""
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
-    @cached_property
-    def _resolvents(self) -> dict[float, Resolvent]:
-        return {offset: resolvent(system) for offset, system in zip(self.offsets, self.systems, strict=True)}
-
     def driven_at(self, offset: float, frequencies: Array) -> Array:
         """Responses (f, k, n) of the loops' poses to strokes at frequencies [Hz], with the modes by one of the offsets off."""
-        return self.loops.sense @ self._resolvents[offset].at(frequencies)
+        return self.loops.sense @ self.systems[self.offsets.index(offset)].transfer(frequencies)
 
     @cached_property
     def driven(self) -> Array:
@@ -113,7 +108,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
         offsets = (0.0, -spread, spread) if spread else (0.0,)
     systems = tuple(_scale_modes(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
-    responses = np.stack([loops.sense @ resolvent(system).at(frequencies) for system in systems])
+    responses = np.stack([loops.sense @ system.transfer(frequencies) for system in systems])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
 
 
