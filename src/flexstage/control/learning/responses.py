@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.closed import Loop, pose_controller
 from flexstage.control.systems.system import System, select
 
 _AT_REST = 1e-4
@@ -23,23 +23,9 @@ def readings(plant: Plant, control: System, frequencies: Array, offset: float = 
     y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. Modes that lie
     higher are time that runs faster, lags and delays with it.
     """
-    given = plant.hardware
-    slower = replace(given, rate=(given.rate or np.inf) / (1.0 + offset), delay=given.delay * (1.0 + offset))
-    moved = replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
-    P, names = moved.transfer(frequencies), plant.coordinates.names
-    parts = {kind: _part(control, kind, names, frequencies) for kind in ("error", "pose", "reference")}
-    back = P @ (parts["error"] - parts["pose"])
-    return np.linalg.solve(np.eye(len(names)) + back, P @ (parts["error"] + parts["reference"]))
-
-
-def _part(control: System, kind: str, names: tuple[str, ...], frequencies: Array) -> Array:
-    wanted = [f"{kind}.{name}" for name in names]
-    known = [name for name in wanted if name in control.input_names]
-    found = np.zeros((len(frequencies), len(control.outputs), len(names)), complex)
-    if known:
-        seen = select(control, known, control.output_names).transfer(frequencies)
-        found[:, :, [wanted.index(name) for name in known]] = seen
-    return found
+    P = pose_plant(plant, offset).transfer(frequencies)
+    back, forward = np.split(pose_controller(control, plant.coordinates).transfer(frequencies), 2, axis=2)
+    return np.linalg.solve(np.eye(P.shape[1]) + P @ back, P @ forward)
 
 
 def motions(closed: Loop, frequencies: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -106,7 +106,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     """
     if offsets is None:
         offsets = (0.0, -spread, spread) if spread else (0.0,)
-    systems = tuple(_scale_modes(plant, offset) for offset in offsets)
+    systems = tuple(pose_plant(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
     responses = np.stack([loops.sense @ system.transfer(frequencies) for system in systems])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
@@ -121,16 +121,6 @@ def _fastest(plant: Plant) -> float:
 
 def _highest(plant: Plant) -> float:
     return 20.0 * float(plant.frequencies[-1]) if plant.hardware.rate is None else 0.5 * plant.hardware.rate
-
-
-def _scale_modes(plant: Plant, offset: float) -> System:
-    """The plant with all its modes by a relative offset higher; lags and delays go with them."""
-    given = plant.hardware
-    if given.rate is None:
-        found = pose_plant(plant)
-        return replace(found, A=found.A * (1.0 + offset), B=found.B * (1.0 + offset))
-    slower = replace(given, rate=given.rate / (1.0 + offset), delay=given.delay * (1.0 + offset))
-    return replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
 
 
 def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
