@@ -144,7 +144,7 @@ def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the
         loops = given.plant.coordinates
         both = [select(zero_order_hold(each), loops.actuators, [f"gap.{name}" for name in loops.gauges]) for each in (few, given.whole)]
         plants = [loops.pose @ each.transfer(lines) for each in both]
-        feedback = pose_controller(closed.controller, loops).transfer(lines, slice(len(loops.names)))
+        feedback = pose_controller(closed.controller, loops).sweep(lines, slice(len(loops.names)))
         change = (plants[1] - plants[0]) @ feedback @ np.linalg.inv(np.eye(len(loops.names)) + plants[0] @ feedback)
         direct = np.max(np.linalg.norm(loops.scale[:, None] * change / loops.scale, 2, axis=(1, 2)))
         if direct > 1e-4:

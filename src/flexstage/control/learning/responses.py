@@ -23,8 +23,8 @@ def readings(plant: Plant, control: System, frequencies: Array, offset: float = 
     y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. Modes that lie
     higher are time that runs faster, lags and delays with it.
     """
-    P = pose_plant(plant, offset).transfer(frequencies)
-    back, forward = np.split(pose_controller(control, plant.coordinates).transfer(frequencies), 2, axis=2)
+    P = pose_plant(plant, offset).sweep(frequencies)
+    back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
     return np.linalg.solve(np.eye(P.shape[1]) + P @ back, P @ forward)
 
 
@@ -32,7 +32,7 @@ def motions(closed: Loop, frequencies: Array) -> Array:
     """Responses (f, k, k) from reference to the true motion against the ground."""
     names = closed.plant.coordinates.names
     whole = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in names])
-    return whole.transfer(frequencies)
+    return whole.sweep(frequencies)
 
 
 @dataclass(frozen=True)

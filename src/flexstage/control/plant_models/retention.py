@@ -117,9 +117,9 @@ def _contributions(whole: Plant, kept: Array, closed: Loop) -> _Contributions:
     lines = _lines(closed, poles.values)
     lines = np.unique(np.concatenate([lines, own[own > lines[0]]]))
     place = np.clip(np.searchsorted(lines, own), 0, len(lines) - 1)
-    feedback, reference = np.split(pose_controller(closed.controller, loop).transfer(lines), 2, axis=2)
+    feedback, reference = np.split(pose_controller(closed.controller, loop).sweep(lines), 2, axis=2)
     seen = LoopLines(lines, loop.scale, feedback)
-    plant = loop.pose @ select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges]).transfer(lines)
+    plant = loop.pose @ select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges]).sweep(lines)
     back = feedback @ seen.sensitivity(plant)
     forward = reference - back @ plant @ reference
     held = poles.held(lines, hardware)

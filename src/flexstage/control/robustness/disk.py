@@ -116,7 +116,7 @@ def _scale(matrices: Array, logs: Array) -> Array:
 
 def _search_bounds(moved: System, frequencies: Array) -> tuple[float, float, float]:
     """The highest bounds from below and above, and where the one from below stands: local maxima over frequency followed to their tops."""
-    matrices = moved.transfer(frequencies)
+    matrices = moved.sweep(frequencies)
     sizes = np.linalg.svd(_scale(matrices, balance(matrices)), compute_uv=False)[:, 0]
     padded = np.concatenate([[-1.0], sizes, [-1.0]])
     tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
@@ -126,7 +126,7 @@ def _search_bounds(moved: System, frequencies: Array) -> tuple[float, float, flo
             break
         ends = float(frequencies[max(top - 1, 0)]), float(frequencies[min(top + 1, len(frequencies) - 1)])
         at, above = _local_maximum(moved, ends)
-        below = lower_bound(moved.transfer(np.array([at]))[0])[0]
+        below = lower_bound(moved.sweep(np.array([at]))[0])[0]
         highest = max(highest, above)
         if below > lowest:
             lowest, place = below, at
@@ -148,7 +148,7 @@ def _local_maximum(moved: System, ends: tuple[float, float]) -> tuple[float, flo
 
 
 def _bound(moved: System, frequency: float) -> tuple[float, Array]:
-    matrix = moved.transfer(np.array([frequency]))
+    matrix = moved.sweep(np.array([frequency]))
     return upper_bound(matrix[0], balance(matrix)[0])
 
 
@@ -178,7 +178,7 @@ def _guaranteed_level(moved: System, frequencies: Array, level: float) -> tuple[
 def _true_crossings(plane: Plane, moved: System, logs: Array, level: float) -> Array:
     """Those frequencies at which a singular value is the level indeed; eigenvalues near the axis leave more."""
     found = level_crossings(plane, level)
-    sizes = np.linalg.svd(_scale(moved.transfer(found), logs), compute_uv=False)
+    sizes = np.linalg.svd(_scale(moved.sweep(found), logs), compute_uv=False)
     return found[np.min(np.abs(sizes / level - 1.0), axis=1) < _TRUE]
 
 

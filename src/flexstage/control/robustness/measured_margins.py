@@ -113,12 +113,12 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     scale = outer[:, None] / inner
     response = known.values[chosen] * scale
     late = np.sinc(lines * step) * np.exp(-2j * np.pi * lines * (0.5 * step + predicted.hardware.delay))
-    control = pose_controller(closed.controller, loop).transfer(lines, slice(len(loop.names)))
+    control = pose_controller(closed.controller, loop).sweep(lines, slice(len(loop.names)))
     whole = LoopLines(lines, loop.scale, control)
     values = whole.margins((loop.pose @ response) * late[:, None, None])
     sure = bool(np.all(np.isfinite(known.deviations)))
     drawn = _draws(whole, loop, response, known.deviations[chosen] * scale, late) if sure else None
-    models = [whole.margins(pose_plant(plant).transfer(lines)) for plant in (closed.plant, predicted)]
+    models = [whole.margins(pose_plant(plant).sweep(lines)) for plant in (closed.plant, predicted)]
     names = loop.names
     low, high = (None, None) if drawn is None else np.quantile([each.sizes for each in drawn], _ENDS, axis=0)
 

@@ -105,7 +105,7 @@ def _gains(found: Curves, number: int) -> tuple[Edge, Edge]:
     """The nearest gains below and above 1 at which L_i = -1/k; both ends of the frequencies count, where L_i is real anyhow."""
     places, own = found.crossings(np.imag, number)
     ends = np.array([0.0] if found.response.step is None else [0.0, 0.5 / found.response.step])
-    places, own = np.append(places, ends), np.append(own, found.response.transfer(ends)[:, number, number])
+    places, own = np.append(places, ends), np.append(own, found.response.sweep(ends)[:, number, number])
     with np.errstate(divide="ignore", invalid="ignore"):
         gains = 1.0 / (1.0 - 1.0 / np.real(own))
     edges = [(float(gain), float(place)) for gain, place in zip(gains, places, strict=True) if _AT_REST < gain < np.inf]
@@ -204,7 +204,7 @@ def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
 def _rise(found: Curves, number: int, of: Callable[[Array], Array]) -> float:
     """Where a function of S_ii first rises through 0."""
     values = of(found.sensitivity[:, number, number])
-    return _first_rise(found.frequencies, values, lambda points: of(found.response.transfer(points)[:, number, number]))
+    return _first_rise(found.frequencies, values, lambda points: of(found.response.sweep(points)[:, number, number]))
 
 
 def _first_rise(frequencies: Array, values: Array, of: Callable[[Array], Array]) -> float:
@@ -222,7 +222,7 @@ def _tracking(closed: Loop, found: Curves, number: int) -> float:
     response = select(closed.system, [f"reference.{name}"], [f"relative.{name}"])
 
     def below(points: Array) -> Array:
-        return np.sqrt(0.5) - np.abs(response.transfer(points)[:, 0, 0])
+        return np.sqrt(0.5) - np.abs(response.sweep(points)[:, 0, 0])
 
     return _first_rise(found.frequencies, below(found.frequencies), below)
 

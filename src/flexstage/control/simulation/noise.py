@@ -51,7 +51,7 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
         density = given.hardware.sensors.get(name, Sensor()).noise_density
         if density:
             frequencies = np.fft.rfftfreq(_length(samples), step)
-            sampled = gauge_noise(given, name, density).transfer(frequencies)
+            sampled = gauge_noise(given, name, density).sweep(frequencies)
             aliased = 2.0 * step * np.sum(np.abs(sampled) ** 2, axis=(1, 2))
             found[f"noise.{name}"] = shape(aliased, samples, step, (seed, Stream.GAUGE, number))
     for number, name in enumerate(given.actuators):

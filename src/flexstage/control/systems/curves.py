@@ -43,8 +43,8 @@ class Curves:
         places = sign_changes(values)
         low, high = self.frequencies[places], self.frequencies[places + 1]
         ends = (low, high), (values[places], values[places + 1])
-        found = roots(lambda points: of(self.response.transfer(points)[:, channel, channel]), *ends)
-        return found, self.response.transfer(found)[:, channel, channel]
+        found = roots(lambda points: of(self.response.sweep(points)[:, channel, channel]), *ends)
+        return found, self.response.sweep(found)[:, channel, channel]
 
 
 def sensitivity(open_loop: System) -> System:
@@ -74,13 +74,13 @@ def curves(closed: Loop, cut: LoopBreak) -> Curves:
     names = tuple(name.removeprefix(f"{cut.value}.") for name in whole.output_names)
     poles = [whole.poles, *(open_at(closed, cut, name).poles for name in names)]
     frequencies = dense_frequencies(np.concatenate(poles), whole.step)
-    found = Curves(cut, names, frequencies, whole.transfer(frequencies), whole)
+    found = Curves(cut, names, frequencies, whole.sweep(frequencies), whole)
     for _ in range(_ROUNDS):
         between = refine(found)
         if not len(between) or len(found.frequencies) > _MOST:
             break
         places = np.searchsorted(found.frequencies, between)
-        refined = np.insert(found.sensitivity, places, whole.transfer(between), axis=0)
+        refined = np.insert(found.sensitivity, places, whole.sweep(between), axis=0)
         found = replace(found, frequencies=np.insert(found.frequencies, places, between), sensitivity=refined)
     return found
 

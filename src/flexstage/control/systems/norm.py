@@ -134,7 +134,7 @@ def _first_frequencies(system: System) -> Array:
 
 
 def _sizes(system: System, frequencies: Array) -> Array:
-    return np.linalg.svd(system.transfer(frequencies), compute_uv=False)[:, 0]
+    return np.linalg.svd(system.sweep(frequencies), compute_uv=False)[:, 0]
 
 
 def _highest_of(system: System, frequencies: Array) -> Peak:

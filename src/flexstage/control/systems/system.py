@@ -77,15 +77,28 @@ class System(CheckedFields):
         triangle, vectors = scipy.linalg.schur(balanced.astype(complex), output="complex")[:2]
         return triangle, vectors.conj().T @ (self.B / scale[:, None]), (self.C * scale) @ vectors
 
-    def transfer(self, frequencies: Array, columns: slice = slice(None)) -> Array:
-        """Frequency response, complex (f, p, m), at `frequencies` (f,) in Hz, of the inputs in `columns`; infinite ones give D.
+    def _points(self, frequencies: Array) -> Array:
+        turning = 2j * np.pi * np.asarray(frequencies, dtype=float)
+        return turning if self.step is None else np.exp(turning * self.step)
 
-        One Schur form, then C Q (lambda - T)^-1 Q^H B + D by back substitution: n^2 operations a point, whether or not A has all
-        eigenvectors.
+    def transfer(self, frequencies: Array) -> Array:
+        """Frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) in Hz; lambda = j omega, or e^{j omega T}.
+
+        States are balanced first: rates of modes are thousands of times their motions, and a solve would lose as many digits.
+        """
+        balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
+        entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)
+        shifted = points[:, None, None] * np.eye(len(balanced)) - balanced
+        return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
+
+    def sweep(self, frequencies: Array, columns: slice = slice(None)) -> Array:
+        """The same at many frequencies, of the inputs in `columns`; infinite frequencies give D (continuous systems only).
+
+        One Schur form, then back substitution: n^2 operations a point, whether or not A has all eigenvectors. Elements that are zero by
+        symmetry are rounding of the largest.
         """
         frequencies, direct = np.asarray(frequencies, dtype=float), self.D[:, columns]
-        turning = 2j * np.pi * np.where(np.isfinite(frequencies), frequencies, 0.0)
-        points = turning if self.step is None else np.exp(turning * self.step)
+        points = self._points(np.where(np.isfinite(frequencies), frequencies, 0.0))
         triangle, entry, exit_ = self.schur_form
         entry = entry[:, columns]
         size = max(1, _CHUNK // max(1, entry.size))

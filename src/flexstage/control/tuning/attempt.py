@@ -238,7 +238,7 @@ def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
     """It and its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
     if notch not in seen.kept:
         found = notch.system(seen.step)
-        seen.kept[notch] = found, found.transfer(seen.frequencies)[:, 0, 0]
+        seen.kept[notch] = found, found.sweep(seen.frequencies)[:, 0, 0]
     return seen.kept[notch]
 
 
@@ -250,7 +250,7 @@ def _sampled_response(law: Law, seen: View) -> Array | None:
         return None
     entry = found.B[:, [0]] - found.B[:, [1]]
     alone = replace(found, B=entry, D=found.D[:, [0]] - found.D[:, [1]], inputs=found.inputs[:1])
-    return alone.transfer(seen.frequencies)[:, 0, 0]
+    return alone.sweep(seen.frequencies)[:, 0, 0]
 
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
@@ -355,7 +355,7 @@ class _Designer:
 
     def estimates_at(self, frequencies: Array) -> Array:
         """The same (s, f, k + n) at other frequencies [Hz]."""
-        found, count = self.estimator.transfer(frequencies), len(self.seen.loops.names)
+        found, count = self.estimator.sweep(frequencies), len(self.seen.loops.names)
         found[..., :count] = found[..., :count] @ np.linalg.inv(self.seen.loops.sense)
         return np.ascontiguousarray(np.moveaxis(found, 0, 1))
 

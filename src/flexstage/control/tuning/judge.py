@@ -85,7 +85,7 @@ def open_gains(seen: View, control: System) -> Array:
     (1, 1)
     """
     whole = pose_controller(control, seen.loops.coordinates, seen.loops.sense)
-    return seen.responses @ whole.transfer(seen.frequencies, slice(len(seen.loops.names)))
+    return seen.responses @ whole.sweep(seen.frequencies, slice(len(seen.loops.names)))
 
 
 def closed_growth(plant: System, control: System) -> float:

@@ -50,10 +50,10 @@ def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
     """
     count, coordinates = len(within.seen.loops.names), within.seen.loops.coordinates
     entered, eye = pose_controller(control, coordinates, within.seen.loops.sense), np.eye(count)
-    every = gain * entered.transfer(within.frequencies.ravel(), slice(count)).reshape(*within.frequencies.shape, -1, count)
+    every = gain * entered.sweep(within.frequencies.ravel(), slice(count)).reshape(*within.frequencies.shape, -1, count)
     opened = within.strokes @ every
     left = np.linalg.inv(eye + opened)
-    slow = gain * entered.transfer(within.lines[1:])
+    slow = gain * entered.sweep(within.lines[1:])
     following = np.linalg.solve(eye + within.slow_strokes @ slow[..., :count], within.slow_strokes @ slow[..., count:])
     steps, interval = _steps(np.einsum("whkk->whk", following)), 0.5 / float(within.lines[-1])
     lengths = coordinates.scale[:, None] * np.linalg.inv(within.seen.loops.sense)

@@ -271,7 +271,7 @@ def _disturbed(seen: View, frequencies: Array, floor: Mapping[str, Spectrum]) ->
     names = [f"relative.{name}" for name in seen.loops.coordinates.names]
     if not floor:
         return _DRIFT * np.eye(len(names))[None] / frequencies[:, None, None]
-    moved = select(seen.plant.system, list(floor), names).transfer(frequencies)
+    moved = select(seen.plant.system, list(floor), names).sweep(frequencies)
     shaken = np.sqrt(np.stack([spectrum.at(frequencies) for spectrum in floor.values()], axis=-1))
     return seen.loops.sense @ moved * shaken[:, None, :]
 

@@ -69,7 +69,7 @@ class View:
 
     def driven_at(self, offset: float, frequencies: Array) -> Array:
         """Responses (f, k, n) of the loops' poses to strokes at frequencies [Hz], with the modes by one of the offsets off."""
-        return self.loops.sense @ self.systems[self.offsets.index(offset)].transfer(frequencies)
+        return self.loops.sense @ self.systems[self.offsets.index(offset)].sweep(frequencies)
 
     @cached_property
     def driven(self) -> Array:
@@ -108,7 +108,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
         offsets = (0.0, -spread, spread) if spread else (0.0,)
     systems = tuple(pose_plant(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
-    responses = np.stack([loops.sense @ system.transfer(frequencies) for system in systems])
+    responses = np.stack([loops.sense @ system.sweep(frequencies) for system in systems])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
 
 
