@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,6 +47,21 @@ class Band:
         share = np.clip((np.asarray(frequencies) / self.end - _TAPER) / (1.0 - _TAPER), 0.0, 1.0)
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
+    def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
+        """Q R + (1 - Q) I `beyond` (f, k, k): responses R within the band; beyond it unchanged (1) or nothing (0)."""
+        share = self.gains(frequencies)
+        inside = share > 0.0
+        responses, share = respond(frequencies[inside]), share[inside, None, None]
+        own = beyond * np.eye(responses.shape[-1])
+        found = np.broadcast_to(own, (len(frequencies), *own.shape)).astype(complex)
+        found[inside] = share * responses + (1.0 - share) * own
+        return found
+
+
+def scaled_norms(values: Array, scale: Array) -> Array:
+    """Largest singular values (f,) of matrices (f, k, k), coordinates taken as lengths."""
+    return np.linalg.norm(values * scale[:, None] / scale, ord=2, axis=(1, 2))
+
 
 def frequencies_of(path: Array, step: float) -> Array:
     """Frequencies [Hz] of a path's transform; instead of 0, where integrators have no number, next to nothing."""
@@ -63,12 +79,3 @@ def through(responses: Array, path: Array) -> Array:
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)
-
-
-def inverse(responses: Array, band: Array) -> Array:
-    """Q T^-1 (f, k, k) + (1 - Q) of responses T: the inverse where the band is, what was commanded beyond it."""
-    own = np.eye(responses.shape[-1])
-    found = np.broadcast_to(own, responses.shape).astype(complex)
-    inside = band > 0.0
-    found[inside] = band[inside, None, None] * np.linalg.inv(responses[inside]) + (1.0 - band[inside, None, None]) * own
-    return found
