@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -110,6 +111,13 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     frequencies = _frequencies(plant, offsets)
     responses = np.stack([loops.sense @ system.sweep(frequencies) for system in systems])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
+
+
+def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
+    """Loops (v, f, k) before this one with the same response, and the loop itself: a symmetric stage has several."""
+    largest = np.max(np.abs(own[..., loop]))
+    yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
+    yield loop
 
 
 def _fastest(plant: Plant) -> float:
