@@ -3,40 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import PPoly
 
 from flexstage.base.number import Array
 
 
-@dataclass(frozen=True, eq=False)
-class Pieces:
-    """Polynomials sum_i `coefficients`[k, i] (t - `knots`[k])^i between knots (k + 1,) [s], coefficients (k, 6, c); at rest outside."""
-
-    knots: Array
-    coefficients: Array
+class Pieces(PPoly):  # type: ignore[misc]
+    """A piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot."""
 
     @property
     def duration(self) -> float:
         """Time of the last knot [s]."""
-        return float(self.knots[-1])
+        return float(self.x[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
         """Values (n, c), or those of the derivative of an `order`."""
-        times = np.clip(np.asarray(times, dtype=float), self.knots[0], self.knots[-1])
-        piece = np.clip(np.searchsorted(self.knots, times, side="right") - 1, 0, len(self.coefficients) - 1)
-        return _polynomial(self.coefficients[piece], times - self.knots[piece], order)
-
-
-def _polynomial(coefficients: Array, times: Array, order: int) -> Array:
-    """Horner's rule on coefficients (n, 6, c) at times (n,)."""
-    powers = np.arange(6.0)
-    factors = np.prod([np.maximum(powers - each, 0.0) for each in range(order)], axis=0) * np.ones(6)
-    total = np.zeros((len(coefficients), coefficients.shape[2]))
-    for power in range(5, order - 1, -1):
-        total = total * times[:, None] + factors[power] * coefficients[:, power]
-    return total
+        return np.asarray(self(np.clip(times, self.x[0], self.x[-1]), order))
 
 
 def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
@@ -47,7 +31,8 @@ def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
     [0.5, 1.0, 1.0]
     """
     kept = [(time, coefficients) for time, coefficients in parts if time > 0.0]
-    return Pieces(np.concatenate([[0.0], np.cumsum([time for time, _ in kept])]), np.array([each for _, each in kept]))
+    knots = np.concatenate([[0.0], np.cumsum([time for time, _ in kept])])
+    return Pieces(np.stack([each[::-1] for _, each in kept], axis=1), knots)
 
 
 def rest(position: Array) -> Array:
