@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Record, Role
 
 BLOCK = 1 << 19
@@ -66,7 +67,7 @@ def gather(record: Record) -> RecordNumbers:
     runs = [_Runs() for _ in range(size)]
     rows = max(1, BLOCK // size // _SEGMENT) * _SEGMENT
     with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
-        for block in record.blocks(rows):
+        for number, block in enumerate(record.blocks(rows)):
             finite = np.isfinite(block)
             moments.add(block, finite)
             extremes.add(block, finite)
@@ -74,6 +75,7 @@ def gather(record: Record) -> RecordNumbers:
             spectra.add(block[:, inputs])
             for run, values in zip(runs, block.T, strict=True):
                 run.add(values)
+            report(min(1.0, (number + 1) * rows / record.length))
     found = tuple(_numbers(column, moments, extremes, gaps, runs[column]) for column in range(size))
     return RecordNumbers(found, gaps.longest, spectra.sum / max(1, spectra.segments), spectra.segments)
 
