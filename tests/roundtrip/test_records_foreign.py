@@ -13,10 +13,10 @@ import scipy.io
 
 from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.options import Arrays, Kind, Options
 from flexstage.experiment.records.record import Record, Responses, in_memory
 from tests.roundtrip.records import awkward_record, awkward_responses, write_version_73
+from tests.roundtrip.records import write_form as write
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # pyuff does not close what it writes in binary
 

@@ -55,7 +55,7 @@ class Numbers:
         before, total = self.count - self.broken, max(1, self.count - self.broken + len(held))
         mean = float(np.sum(held)) / max(1, len(held))
         shift = (mean - self.mean) * bool(len(held))
-        self.square += float(np.sum((held - mean) ** 2)) + shift**2 * before * len(held) / total
+        self.square += float(np.sum((held - mean) ** 2)) + shift * before * shift * len(held) / total
         self.mean += shift * len(held) / total
 
     def _add_runs(self, values: Array) -> None:
