@@ -386,15 +386,3 @@ def modal_assurance(first: Array, second: Array, weight: Array | None = None) ->
     values = cross / (own[0][..., :, None] * own[1][..., None, :])
     rows, columns = (tuple(str(index + 1) for index in range(shape.shape[-1])) for shape in (first, second))
     return Matrix(values, rows, columns, "1")
-
-
-def subspace_angle(first: Array, second: Array, weight: Array | None = None) -> float:
-    """Largest principal angle [rad] between the spaces of shapes (n, k) and (n, m): how far repeated modes agree as subspaces.
-
-    >>> round(subspace_angle(np.eye(3)[:, :2], np.eye(3)[:, :2] @ np.array([[1.0, 1.0], [1.0, -1.0]])), 7)
-    0.0
-    """
-    half = np.eye(first.shape[-2]) if weight is None else np.linalg.cholesky(weight).T
-    left, right = (np.linalg.qr(half @ shape)[0] for shape in (first, second))
-    distance = right - left @ (left.conj().T @ right)
-    return float(np.arcsin(np.clip(np.linalg.norm(distance, 2), 0.0, 1.0)))

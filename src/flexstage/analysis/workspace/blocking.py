@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number, magnitude, stack
+from flexstage.base.number import Array, magnitude, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, FORCE, STIFFNESS
 from flexstage.mechanism.assembly.expand import expand
@@ -59,10 +59,6 @@ class PlatformLine(InNotebook):
     stiffness: Array
     blocking: Array
     provenance: str
-
-    def against(self, stiffness: Number) -> Array:
-        """Travel (..., f) left when each coordinate works against a spring [N/m, N m/rad] fixed to the ground."""
-        return self.blocking / (self.stiffness + stiffness)
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
@@ -131,7 +127,7 @@ def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) ->
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
     >>> line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))
-    >>> bool(np.allclose(line.against(0.0), line.travel))
+    >>> bool(np.allclose(line.blocking, line.travel * line.stiffness))
     True
     """
     twist = tuple(f"{PLATFORM}.{name}" for name in mapping.columns)

@@ -124,17 +124,6 @@ class LoadShare(InNotebook):
             else:
                 yield Finding(name, f"{what}, {share[place]:.3g} times what its limits allow", "Preload it, or limit the volts")
 
-    def capacity(self, direction: Array, at: Array) -> Array:
-        """Largest force (...) [N] along a unit direction at a point of the platform that no stack refuses, on top of the dead load."""
-        added = self.under(direction, at)
-        room = np.where(added > 0.0, self.maximum - np.nan_to_num(self.preload) - self.compression, self._pull_room)
-        scale = np.where(np.abs(added) > 1e-12, np.abs(added), np.nan)
-        return np.maximum(0.0, np.nanmin(np.where(np.isnan(room), np.inf, room) / scale, axis=-1))
-
-    @property
-    def _pull_room(self) -> Array:
-        return np.nan_to_num(self.preload) + np.nan_to_num(self.tensile) + self.compression
-
 
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     """Share of weight (bodies, links, payloads) and of the description's forces among the stacks, strokes held.
