@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
 from flexstage.base.record import INNER, VIEW, Heading, Layout, Mark
 from flexstage.base.units.quantity import FREQUENCY, SHARE
@@ -63,8 +63,7 @@ class Mode:
         return "platform" if self.platform else "local, near" if self.local else "local"
 
 
-@dataclass(frozen=True, eq=False)
-class Modes(InNotebook):
+class Modes(Result):
     """Undamped modes of a stage, ascending.
 
     `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)

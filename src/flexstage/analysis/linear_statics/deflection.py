@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -17,8 +15,7 @@ from flexstage.models.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
-@dataclass(frozen=True, eq=False)
-class Deflection(InNotebook):
+class Deflection(Result):
     """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each stated force.
 
     Under a controlled stage the gauges see it and the strokes take it back; in open loop it is Eq. 11's load term.

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import NOISE, Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number
 from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import LENGTH, RATIO
@@ -61,8 +61,7 @@ class ActuatorLoss:
         return links
 
 
-@dataclass(frozen=True, eq=False)
-class LostMotion(InNotebook):
+class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
     `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I -

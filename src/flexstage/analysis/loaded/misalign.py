@@ -12,7 +12,7 @@ from flexstage.analysis.loaded.strained import strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, LowerBoundError, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.mechanism.assembly.expand import Assembly, copies, expand
@@ -34,8 +34,7 @@ _FREQUENCIES = 3
 _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 
 
-@dataclass(frozen=True, eq=False)
-class Misaligned(InNotebook):
+class Misaligned(Result):
     """A stage whose `copy` stands misaligned on the ground along one of its own axes (x, y, z) or about it (rx, ry, rz).
 
     `along` has a row a size of the misalignment: the load that forces the copy there, the first frequencies, the largest stress and strain
@@ -61,8 +60,7 @@ class Misaligned(InNotebook):
         return tuple(strain_warnings(self.strained))
 
 
-@dataclass(frozen=True, eq=False)
-class Misalignments(InNotebook):
+class Misalignments(Result):
     """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where no stiffness vanishes.
 
     `followed` is that up to which the stage is known to be stable, as in `Misaligned`. `load` is what forces the copy to `size` [rad, m],

@@ -13,7 +13,7 @@ from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -32,8 +32,7 @@ _SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
 """Where between rest and what is asked an equilibrium is looked for when there is none."""
 
 
-@dataclass(frozen=True, eq=False)
-class OperatingPoint(InNotebook):
+class OperatingPoint(Result):
     """Operating point: `sag` is where its weight, loads and heat bring it from its drawn, unloaded position, `moved` how far from there.
 
     Both have a row a place (the platform and named points), columns displacement and rotation vector; None where it is brought nowhere.

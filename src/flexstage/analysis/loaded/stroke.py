@@ -14,7 +14,7 @@ from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import LENGTH
@@ -36,8 +36,7 @@ _AT_ONCE = 2
 _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 
 
-@dataclass(frozen=True, eq=False)
-class Stroke(InNotebook):
+class Stroke(Result):
     """A stage along `drive`: a row a point `along` it.
 
     Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, magnitude, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, FORCE, STIFFNESS
@@ -20,8 +19,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
-@dataclass(frozen=True, eq=False)
-class StackLine(InNotebook):
+class StackLine(Result):
     """Each stack driven alone over its full stroke against the stage, (..., n) each.
 
     `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `stage_stiffness` [N/m] the
@@ -40,8 +38,7 @@ class StackLine(InNotebook):
     provenance: str
 
 
-@dataclass(frozen=True, eq=False)
-class PlatformLine(InNotebook):
+class PlatformLine(Result):
     """The platform's force-stroke line along each coordinate, commanded by the ideal mapping, (..., f) each.
 
     `travel` [m, rad] without load (both ways), `stiffness` [N/m, N m/rad] of the platform against a load along this coordinate alone,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, ClassVar
 
@@ -13,7 +12,7 @@ from flexstage.analysis.workspace.load import SAFETY
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, index_of_largest
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import RATIO
@@ -38,8 +37,7 @@ class Ends(Enum):
     """One end clamped, the other held by nothing else (a body on a single flexure): effective length 2 L."""
 
 
-@dataclass(frozen=True, eq=False)
-class Buckling(InNotebook):
+class Buckling(Result):
     """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
 
     `ends` says how each column was taken as held. `stage` is how the whole stage gives way: what a column's ends really do, and several

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, stack
 from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import LENGTH
@@ -33,8 +33,7 @@ class Intrusion:
     depth: Annotated[Array, LENGTH]
 
 
-@dataclass(frozen=True, eq=False)
-class Clearance(InNotebook):
+class Clearance(Result):
     """What the stage occupies.
 
     `intrusions` into the `opening` (..., 2) [m], none where none is described; `low` and `high` corners (..., 3) [m] of the bounding box;

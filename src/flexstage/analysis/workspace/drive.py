@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, require
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, stack
 from flexstage.base.record import Along, Heading, Layout
 from flexstage.base.units.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
 from flexstage.mechanism.mechanism import Mechanism
 
 
-@dataclass(frozen=True, eq=False)
-class Drive(InNotebook):
+class Drive(Result):
     """The electrical side of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN where not stated).
 
     Linear: the free stroke is proportional to the voltage; hysteresis and creep are left to the loop.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, ClassVar
 
@@ -16,7 +15,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, first_design, magnitude
 from flexstage.base.record import INNER, VIEW, Axes, Heading, Layout
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
@@ -36,8 +35,7 @@ _YIELD = "yield stress"
 _LIMIT = 'Add for example peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
 
 
-@dataclass(frozen=True, eq=False)
-class ForceWorkspace(InNotebook):
+class ForceWorkspace(Result):
     """Force workspace: travel of a point along single coordinates, either way, by the elastic model; alone where the inputs allow it.
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate, the other ideal

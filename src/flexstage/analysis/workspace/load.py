@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, Vector, stack
 from flexstage.base.record import Along, Graded, Heading, Layout, Mark
 from flexstage.base.units.quantity import FORCE, SHARE, Bound
@@ -29,8 +28,7 @@ SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
 """Grade of factors against failure: below 1 it happens, below 1.5 little is left."""
 
 
-@dataclass(frozen=True, eq=False)
-class LoadRange(InNotebook):
+class LoadRange(Result):
     """Compression [N] of each stack over the strokes: `min_force`, `max_force`; `usage` of its maximum load, `pull` over what holds it."""
 
     TABLE: ClassVar[Layout] = Layout(
@@ -46,8 +44,7 @@ class LoadRange(InNotebook):
     pull: Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used in tension")]
 
 
-@dataclass(frozen=True, eq=False)
-class LoadShare(InNotebook):
+class LoadShare(Result):
     """Axial forces of the stacks under dead load, positive in compression.
 
     `loads` (actuators x own weight, payloads and forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench;

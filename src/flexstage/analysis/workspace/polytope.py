@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Annotated, ClassVar
 
@@ -12,7 +11,7 @@ import scipy
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import VIEW, Layout
 from flexstage.base.units.quantity import RATIO
@@ -22,8 +21,7 @@ _MOST_VERTEX_CANDIDATES = 20_000
 _TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Polytope(InNotebook):
+class Polytope(Result):
     """Reachable poses {xi : `normals` xi <= `offsets`}: normals (..., 2 n, f), offsets (..., 2 n) [m].
 
     `vertices` (..., v, f) [m, rad] (padded with NaN where redundant strokes leave designs with fewer), `volume` (...) in `volume_unit`.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Annotated, Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -13,7 +13,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, index_of_largest
 from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import RATIO
@@ -25,8 +25,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 
 
-@dataclass(frozen=True, eq=False)
-class HingeStress(InNotebook):
+class HingeStress(Result):
     """Largest stress in every hinge over the corners of the strokes, (..., L) each.
 
     `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN where the material states none); `strokes`

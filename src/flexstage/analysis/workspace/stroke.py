@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
@@ -60,8 +60,7 @@ class StrokeLimits:
         return beside(np.moveaxis(self.corners, -2, 0), depth)
 
 
-@dataclass(frozen=True, eq=False)
-class SingleAxis(InNotebook):
+class SingleAxis(Result):
     """Strokes of the platform along one coordinate at a time, the others held at zero: from `low` to `high` (..., f) [m, rad].
 
     `limiting` names the actuator, or stop (`stops/end`), that ends each stroke (first design, `high` side).
@@ -89,8 +88,7 @@ class SingleAxis(InNotebook):
         return Matrix(values, self.coordinates, ("low", "high", "symmetric", "full"), units)
 
 
-@dataclass(frozen=True, eq=False)
-class Utilisation(InNotebook):
+class Utilisation(Result):
     """What a box of commands, all coordinates at once, asks of the actuators.
 
     `demand` (..., n) [m] is the largest stroke either way over the box' corners, `available` (..., n) the stroke available both ways. Stops
