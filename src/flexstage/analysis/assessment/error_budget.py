@@ -170,6 +170,6 @@ def _resolution_errors(resolution: PoseResolution, carry: Array) -> Array:
 
 
 def _table(columns: tuple[Array, ...]) -> Matrix:
-    values = np.stack(np.broadcast_arrays(*columns), axis=-1)
+    values = stack(list(columns))
     sources = (*SOURCES, STEPS)[: len(columns)]
     return Matrix(values, COMPONENTS, sources, tuple((unit,) * len(sources) for unit in TWIST_UNITS))

@@ -18,7 +18,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.freedom import ALL
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import COMPONENTS, MOTION
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
@@ -134,7 +134,7 @@ def _least(transfer: Array, kinematics: Kinematics) -> Array:
 
 
 def _stroke_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
-    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
+    units = tuple(map(MOTION.unit, kinematics.coordinates))
     return ratio_units(("m",) * len(kinematics.actuators), units)
 
 

@@ -26,7 +26,7 @@ from flexstage.models.nonlinear.paths.critical_load import NothingGivesWayError,
 from flexstage.models.nonlinear.paths.load_path import continue_along
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import SolverOptions
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _MOST = 0.1
 """The largest misalignment looked at [rad, or over the flexures' length]."""
@@ -121,7 +121,7 @@ def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONE
     """
     rows = seated(mechanism)
     values = [[_forced(mechanism, copy, axis).limits(1.0) for axis in axes] for copy in rows]
-    units = (tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes),) * len(rows)
+    units = (tuple(map(MOTION.unit, axes)),) * len(rows)
     critical, followed = np.moveaxis(np.array(values).reshape(len(rows), len(axes), 2), -1, 0)
     return Matrix(critical, rows, axes, units), Matrix(followed, rows, axes, units)
 
@@ -134,7 +134,7 @@ def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], 
     critical, followed = critical_misalignments(mechanism, axes)
     there = [[_at_size(_forced(mechanism, copy, axis), size) for axis in axes] for copy in critical.rows]
     values = np.array(there).reshape(len(critical.rows), len(axes), 2)
-    units = tuple(WRENCH_UNITS[COMPONENTS.index(axis)] for axis in axes)
+    units = tuple(map(WRENCH.unit, axes))
     load = Matrix(values[..., 0], critical.rows, axes, (units,) * len(critical.rows))
     stress = Matrix(values[..., 1], critical.rows, axes, (("Pa",) * len(axes),) * len(critical.rows))
     return Misalignments(critical, followed, size, load, stress, _worst(mechanism, (critical, followed), stress, size))

@@ -24,7 +24,7 @@ from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_e
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.paths.critical_load import require_continuation, unstable_motions
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _STILL = 1e-12
 """Motion over the flexures' length, and in radians, that counts as none."""
@@ -189,7 +189,7 @@ def _how_far(asked: _Asked, rest: State) -> tuple[str, str]:
     if not count:
         return "no equilibrium was found, not even a sixteenth of the way", "Look whether what is held contradicts itself"
     share, most = _SHARES[count - 1], float(np.max(strains(tried).largest[count - 1], initial=0.0))
-    units = [WRENCH_UNITS[COMPONENTS.index(name.rpartition(".")[2])] for name in asked.coordinates]
+    units = [WRENCH.unit(name.rpartition(".")[2]) for name in asked.coordinates]
     force = ", ".join(f"{each:.4g} {unit}" for each, unit in zip(tried.reactions[count - 1], units, strict=True))
     reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in asked.at.items())
     what = f"no equilibrium was found there, but {share:.0%} of the way ({reached}) there is one"

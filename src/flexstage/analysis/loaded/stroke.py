@@ -28,7 +28,7 @@ from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.paths.critical_load import unstable_motions
 from flexstage.models.nonlinear.paths.load_path import LoadPath
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH
 
 _FREQUENCIES = ("f1", "f2", "f3")
 _AT_ONCE = 2
@@ -167,7 +167,7 @@ def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], s
     begun = 0.0 if rest is None or not held else coordinate(rest, drive)
     yield drive, (lambda: points.values - begun, units[component] if held else known.get(drive, "1"))
     if held:
-        force = WRENCH_UNITS[COMPONENTS.index(component)]
+        force = WRENCH.unit(component)
         yield "force", (lambda: state.reactions[..., 0], force)
         conjugate = f"{owner}.{_FORCE_OF[component]}"
         if conjugate in known:

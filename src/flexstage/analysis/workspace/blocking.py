@@ -16,7 +16,7 @@ from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, WRENCH
 
 
 class StackLine(Result):
@@ -60,8 +60,8 @@ class PlatformLine(Result):
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
         """Rows are the coordinates, columns travel, stiffness and blocking."""
-        moves = [TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
-        loads = [WRENCH_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
+        moves = list(map(MOTION.unit, self.coordinates))
+        loads = list(map(WRENCH.unit, self.coordinates))
         slopes = ratio_units(tuple(loads), tuple(moves))
         units = tuple((move, slopes[index][index], load) for index, (move, load) in enumerate(zip(moves, loads, strict=True)))
         values = np.stack([self.travel, self.stiffness, self.blocking], axis=-1)
@@ -84,9 +84,9 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     links = tuple(assembly.strokes.values())
     names = tuple(assembly.strokes)
     strokes = [assembly.actuator(name).free_deformation for name in names]
-    slope = -_joined([_along(model, link, name, free) for (name, link), free in zip(assembly.strokes.items(), strokes, strict=True)])
+    slope = -stack([_along(model, link, name, free) for (name, link), free in zip(assembly.strokes.items(), strokes, strict=True)])
     laws = [model.stiffness[link].law[..., :6, :6] for link in links]
-    own = _joined([np.sum((law @ along[..., None])[..., 0] * along, axis=-1) for law, along in zip(laws, strokes, strict=True)])
+    own = stack([np.sum((law @ along[..., None])[..., 0] * along, axis=-1) for law, along in zip(laws, strokes, strict=True)])
     free = stack([part.stroke for part in stroke_actuators(mechanism).values()])
     against = slope * own / (own - slope)
     return StackLine(
@@ -106,10 +106,6 @@ def _along(model: LinearModel, link: str, name: str, free: Array) -> Array:
     places = np.flatnonzero(np.any(np.reshape(free, (-1, 6)), axis=0))
     forces = static_gain(model, tuple(f"{link}.{FORCES[place]}" for place in places), (name,)).values[..., 0]
     return np.sum(forces * free[..., places], axis=-1)
-
-
-def _joined(values: list[Array]) -> Array:
-    return np.stack(np.broadcast_arrays(*values), axis=-1) if values else np.zeros(0)
 
 
 def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:

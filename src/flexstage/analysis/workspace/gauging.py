@@ -189,7 +189,7 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
     limit = half_ranges(assembly)
     box = kinematics.motion * half[..., None, :]
     places = [_places(assembly, name, box, limit[..., number]) for number, name in enumerate(assembly.gauges)]
-    columns = [np.stack(np.broadcast_arrays(*values), axis=-1) for values in zip(*places, strict=True)]
+    columns = [stack(list(values)) for values in zip(*places, strict=True)]
     radius, here, anywhere = columns or [np.zeros(0)] * 3
     return GaugeRange(
         gauges=kinematics.gauges,
@@ -284,4 +284,4 @@ def _around(vector: Array, angles: Array) -> Array:
     """A vector (..., 3) turned about z by each angle, (..., angles, 3)."""
     x, y, z = (vector[..., None, index] for index in range(3))
     cosine, sine = np.cos(angles), np.sin(angles)
-    return np.stack(np.broadcast_arrays(x * cosine - y * sine, x * sine + y * cosine, z), axis=-1)
+    return stack([x * cosine - y * sine, x * sine + y * cosine, z])

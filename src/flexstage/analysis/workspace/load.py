@@ -142,7 +142,7 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     axial = tuple(f"{link}.fx" for link in assembly.strokes.values())
     require_known(model, axial)
     causes = dead_loads(mechanism, model)
-    motion = displacement(model, np.stack(np.broadcast_arrays(*causes.values()), axis=-1))
+    motion = displacement(model, stack(list(causes.values())))
     loads = -model.seen(model.output_index(axial), motion)
     wrench = static_gain(model, axial, tuple(f"{PLATFORM}.{name}" for name in FORCES)).values
     parts = stroke_actuators(mechanism).values()

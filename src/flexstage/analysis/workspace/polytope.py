@@ -15,7 +15,7 @@ from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import VIEW, Layout
 from flexstage.base.units.quantity import RATIO
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import MOTION
 
 _MOST_VERTEX_CANDIDATES = 20_000
 _TOLERANCE = 1e-9
@@ -46,14 +46,14 @@ class Polytope(Result):
     def poses(self) -> Annotated[Matrix, VIEW]:
         """The vertices, of one design."""
         known = self.vertices[~np.isnan(self.vertices).any(axis=-1)]
-        units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates)
+        units = tuple(map(MOTION.unit, self.coordinates))
         return Matrix(known, tuple(str(number + 1) for number in range(len(known))), self.coordinates, (units,) * len(known))
 
     @property
     def extent(self) -> Annotated[Matrix, VIEW]:
         """The least and largest value of each coordinate when the others are free to follow (rows: coordinates)."""
         values = np.stack([np.nanmin(self.vertices, axis=-2), np.nanmax(self.vertices, axis=-2)], axis=-1)
-        units = tuple((TWIST_UNITS[COMPONENTS.index(name)],) * 2 for name in self.coordinates)
+        units = tuple((MOTION.unit(name),) * 2 for name in self.coordinates)
         return Matrix(values, self.coordinates, ("least", "largest"), units)
 
 

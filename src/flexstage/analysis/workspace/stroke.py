@@ -20,7 +20,7 @@ from flexstage.mechanism.assembly.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.actuator import ChargedActuator, StrokeActuator
-from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, Frame
+from flexstage.spatial.frame import COMPONENTS, MOTION, Frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ class SingleAxis(Result):
     def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the coordinates, columns low, high, symmetric and full."""
         values = np.stack([self.low, self.high, self.symmetric, self.high - self.low], axis=-1)
-        units = tuple((_unit(name),) * 4 for name in self.coordinates)
+        units = tuple((MOTION.unit(name),) * 4 for name in self.coordinates)
         return Matrix(values, self.coordinates, ("low", "high", "symmetric", "full"), units)
 
 
@@ -243,7 +243,3 @@ def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Num
     demand = (magnitude(mapping.values) @ magnitude(half)[..., None])[..., 0]
     available = np.minimum(-limits.low, limits.high)
     return Utilisation(mapping.rows, dict(command), demand, available, provenance)
-
-
-def _unit(coordinate: str) -> str:
-    return TWIST_UNITS[COMPONENTS.index(coordinate)]
