@@ -36,7 +36,7 @@ def drive(mechanism: Mechanism) -> Drive:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> electric = drive(double_triangle())
-    >>> (1e6 * electric.gain).round(3).tolist(), electric.volts(np.zeros(6)).tolist()[0]
+    >>> (1e6 * electric.gain).round(3).tolist(), electric.bias.tolist()[0]
     ([0.15, 0.15, 0.15, 0.2, 0.2, 0.2], 500.0)
     """
     piezos = stacks(mechanism)
