@@ -15,7 +15,7 @@ from flexstage.analysis.loaded.standing import drawn, load_factors
 from flexstage.analysis.workspace.force_workspace import input_limits
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, LowerBoundError, refuse
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import first_design
 from flexstage.base.record import INNER, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, RATIO
@@ -96,8 +96,7 @@ class CaseFactor:
     found: Annotated[Critical | None, INNER] = None
 
 
-@dataclass(frozen=True, eq=False)
-class CaseFactors(InNotebook):
+class CaseFactors(Result):
     """Every load case and stroke end of a design, `cases`, and what the least factor of them is asked to be, `demand`."""
 
     cases: tuple[CaseFactor, ...]

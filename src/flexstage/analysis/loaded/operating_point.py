@@ -13,7 +13,7 @@ from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -24,7 +24,7 @@ from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_e
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.paths.critical_load import require_continuation, unstable_motions
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _STILL = 1e-12
 """Motion over the flexures' length, and in radians, that counts as none."""
@@ -32,8 +32,7 @@ _SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
 """Where between rest and what is asked an equilibrium is looked for when there is none."""
 
 
-@dataclass(frozen=True, eq=False)
-class OperatingPoint(InNotebook):
+class OperatingPoint(Result):
     """Operating point: `sag` is where its weight, loads and heat bring it from its drawn, unloaded position, `moved` how far from there.
 
     Both have a row a place (the platform and named points), columns displacement and rotation vector; None where it is brought nowhere.
@@ -190,7 +189,7 @@ def _how_far(asked: _Asked, rest: State) -> tuple[str, str]:
     if not count:
         return "no equilibrium was found, not even a sixteenth of the way", "Look whether what is held contradicts itself"
     share, most = _SHARES[count - 1], float(np.max(strains(tried).largest[count - 1], initial=0.0))
-    units = [WRENCH_UNITS[COMPONENTS.index(name.rpartition(".")[2])] for name in asked.coordinates]
+    units = [WRENCH.unit(name.rpartition(".")[2]) for name in asked.coordinates]
     force = ", ".join(f"{each:.4g} {unit}" for each, unit in zip(tried.reactions[count - 1], units, strict=True))
     reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in asked.at.items())
     what = f"no equilibrium was found there, but {share:.0%} of the way ({reached}) there is one"

@@ -14,7 +14,7 @@ from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import LENGTH
@@ -28,7 +28,7 @@ from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.paths.critical_load import unstable_motions
 from flexstage.models.nonlinear.paths.load_path import LoadPath
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH
 
 _FREQUENCIES = ("f1", "f2", "f3")
 _AT_ONCE = 2
@@ -36,8 +36,7 @@ _AT_ONCE = 2
 _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 
 
-@dataclass(frozen=True, eq=False)
-class Stroke(InNotebook):
+class Stroke(Result):
     """A stage along `drive`: a row a point `along` it.
 
     Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
@@ -168,7 +167,7 @@ def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], s
     begun = 0.0 if rest is None or not held else coordinate(rest, drive)
     yield drive, (lambda: points.values - begun, units[component] if held else known.get(drive, "1"))
     if held:
-        force = WRENCH_UNITS[COMPONENTS.index(component)]
+        force = WRENCH.unit(component)
         yield "force", (lambda: state.reactions[..., 0], force)
         conjugate = f"{owner}.{_FORCE_OF[component]}"
         if conjugate in known:
