@@ -117,7 +117,24 @@ def test_arrays_convert_and_show_their_range() -> None:
 
 
 SYMBOLS = ("m", "g", "s", "K", "rad", "B", "A", "N", "Pa", "J", "W", "Hz", "C", "V", "F", "H", "T", "bar", "ohm")
-OTHERS = ("t", "deg", "arcmin", "arcsec", "min", "h", "lb", "lbf", "psi", "g0", "in", "millimeter", "micrometres", "inch", "kilonewton", "MiB")
+OTHERS = (
+    "t",
+    "deg",
+    "arcmin",
+    "arcsec",
+    "min",
+    "h",
+    "lb",
+    "lbf",
+    "psi",
+    "g0",
+    "in",
+    "millimeter",
+    "micrometres",
+    "inch",
+    "kilonewton",
+    "MiB",
+)
 
 
 def test_units_are_those_of_pint() -> None:
