@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PPoly
+import scipy
 
 from flexstage.base.number import Array
 
 
-class Pieces(PPoly):  # type: ignore[misc]
-    """A piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot."""
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """A piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot.
+
+    `coefficients` (k, m, c) have the highest power first, each from its own knot; `knots` (m + 1,).
+    """
+
+    coefficients: Array
+    knots: Array
 
     @property
     def duration(self) -> float:
         """Time of the last knot [s]."""
-        return float(self.x[-1])
+        return float(self.knots[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
         """Values (n, c), or those of the derivative of an `order`."""
-        return np.asarray(self(np.clip(times, self.x[0], self.x[-1]), order))
+        whole = scipy.interpolate.PPoly(self.coefficients, self.knots)
+        return np.asarray(whole(np.clip(times, self.knots[0], self.knots[-1]), order))
 
 
 def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
