@@ -246,9 +246,9 @@ def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, 
 def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float | None] = []
     monkeypatch.setattr("flexstage.solid.results.verification.verify", lambda *_: pytest.fail("computed"))
-    monkeypatch.setattr("flexstage.solid.commands.solid.work_ahead", lambda _todo, ways, _notice: asked.append(ways.limits.memory))
-    monkeypatch.setattr("flexstage.solid.commands.solid.solids", lambda ways, *_: asked.append(ways.limits.memory))
-    monkeypatch.setattr("flexstage.solid.commands.solid.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.solid.commands.solid.work_ahead", lambda _todo, ways: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.solid.commands.solid.solids", lambda ways: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.solid.commands.solid.hinges", lambda _accuracy, _order, ways: asked.append(ways.limits.memory))
     with pytest.raises(pytest.fail.Exception):
         command("verify", "stage.toml", "--memory", "3 GB")
     assert asked == [3e9, 3e9, 3e9]

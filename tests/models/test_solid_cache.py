@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ from flexstage.solid.fea.jobs import parts as parts_module
 from flexstage.solid.fea.jobs.cache import Cache, find, folder_of, keep, key_of
 from flexstage.solid.fea.jobs.parts import Ways, reduce_parts
 from flexstage.solid.fea.jobs.remote import Limits
-from flexstage.solid.fea.jobs.store import to_bytes, versions
+from flexstage.solid.fea.jobs.store import program, to_bytes
 from flexstage.solid.fea.solver.component import components
 from flexstage.solid.results.read import model as solid
 from flexstage.solid.results.read import read_solid, solids
@@ -31,10 +32,7 @@ from tests.models.small_solids import COARSE, Bomb, propped
 from tests.roundtrip.test_superelements import superelement
 
 ELEMENT = superelement(0)
-
-
-def data(key: str) -> bytes:
-    return to_bytes(ELEMENT, key, versions())
+DIGEST = sha256(program().encode()).hexdigest()[:12]
 
 
 def names(folder: Path) -> list[str]:
@@ -50,9 +48,9 @@ def same(one: LinearModel, other: LinearModel) -> bool:
 def test_what_is_kept_is_found(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "deep" / "down")
     assert find(cache, "key", "lever") is None
-    keep(cache, "key", "lever", data("key"))
+    keep(cache, "key", "lever", ELEMENT)
     assert np.array_equal(find(cache, "key", "lever").rigid, ELEMENT.rigid)
-    assert names(tmp_path / "deep" / "down") == [f"key-{versions().digest}.superelement"]
+    assert names(tmp_path / "deep" / "down") == [f"key-{DIGEST}.superelement"]
 
 
 def test_the_folder_is_that_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,7 +77,7 @@ def test_keys_are_of_content_and_reduction() -> None:
 
 def test_a_damaged_file_is_told_and_replaced(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
-    keep(cache, "key", "lever", data("key"))
+    keep(cache, "key", "lever", ELEMENT)
     (path,) = tmp_path.iterdir()
     path.write_bytes(path.read_bytes()[:-100])
     notices: list[Finding] = []
@@ -88,17 +86,17 @@ def test_a_damaged_file_is_told_and_replaced(tmp_path: Path) -> None:
     assert notice.where == "lever"
     assert str(path) in notice.what
     assert "damaged" in notice.what
-    keep(cache, "key", "lever", data("key"))
+    keep(cache, "key", "lever", ELEMENT)
     assert find(cache, "key", "lever") is not None
 
 
 def test_other_versions_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cache = Cache(tmp_path)
-    keep(cache, "key", "lever", data("key"))
-    newer = replace(versions(), flexstage="99.0")
-    monkeypatch.setattr("flexstage.solid.fea.jobs.cache.versions", lambda _: newer)
+    keep(cache, "key", "lever", ELEMENT)
+    for module in ("cache", "store"):
+        monkeypatch.setattr(f"flexstage.solid.fea.jobs.{module}.program", lambda: "flexstage 99.0")
     assert find(cache, "key", "lever") is None
-    keep(cache, "key", "lever", to_bytes(ELEMENT, "key", newer))
+    keep(cache, "key", "lever", ELEMENT)
     assert find(cache, "key", "lever") is not None
     assert len(names(tmp_path)) == 2
 
@@ -106,7 +104,7 @@ def test_other_versions_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 def test_an_unwritable_folder_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     notices: list[Finding] = []
-    keep(Cache(tmp_path / "file"), "key", "lever", data("key"), notice=notices.append)
+    keep(Cache(tmp_path / "file"), "key", "lever", ELEMENT, notice=notices.append)
     (notice,) = notices
     assert notice.where == "lever"
     assert "could not be kept" in notice.what
@@ -119,7 +117,7 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(tmp_path: Path, monkeyp
 
     monkeypatch.setattr(os, "fsync", full)
     notices: list[Finding] = []
-    keep(Cache(tmp_path), "key", "lever", data("key"), notice=notices.append)
+    keep(Cache(tmp_path), "key", "lever", ELEMENT, notice=notices.append)
     (notice,) = notices
     assert "No space left on device" in notice.what
     assert names(tmp_path) == []
@@ -127,13 +125,13 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(tmp_path: Path, monkeyp
 
 @pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="mounts a small disk, which only root may")
 def test_a_small_disk_that_is_full_is_told_and_nothing_is_half_written(tmp_path: Path) -> None:
-    size = len(data("key"))
+    size = len(to_bytes(ELEMENT, "a"))
     command = ["mount", "-t", "tmpfs", "-o", f"size={max(4096, size // 8192 * 4096)}", "tmpfs", str(tmp_path)]
     if subprocess.run(command, capture_output=True, check=False).returncode:
         pytest.skip("this root may not mount")
     try:
         notices: list[Finding] = []
-        keep(Cache(tmp_path), "key", "lever", data("key"), notice=notices.append)
+        keep(Cache(tmp_path), "key", "lever", ELEMENT, notice=notices.append)
         (notice,) = notices
         assert "No space left on device" in notice.what
         assert names(tmp_path) == []
@@ -146,24 +144,24 @@ def test_an_interruption_while_writing_leaves_the_old_file(tmp_path: Path, monke
         raise KeyboardInterrupt
 
     cache = Cache(tmp_path)
-    keep(cache, "key", "lever", data("key"))
+    keep(cache, "key", "lever", ELEMENT)
     before = names(tmp_path)
     monkeypatch.setattr(os, "fsync", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        keep(cache, "key", "lever", data("key"))
+        keep(cache, "key", "lever", ELEMENT)
     assert names(tmp_path) == before
     assert find(cache, "key", "lever") is not None
 
 
 def test_the_least_recently_used_go_first(tmp_path: Path) -> None:
-    size = len(data("a"))
+    size = len(to_bytes(ELEMENT, "a"))
     cache = Cache(tmp_path, limit=2.5 * size)
     for age, key in ((300.0, "a"), (200.0, "b")):
-        keep(cache, key, key, data(key))
+        keep(cache, key, key, ELEMENT)
         then = time.time() - age
-        os.utime(tmp_path / f"{key}-{versions().digest}.superelement", (then, then))
+        os.utime(tmp_path / f"{key}-{DIGEST}.superelement", (then, then))
     assert find(cache, "a", "a") is not None  # used now: b is the older one
-    keep(cache, "c", "c", data("c"))
+    keep(cache, "c", "c", ELEMENT)
     assert [name[0] for name in names(tmp_path)] == ["a", "c"]
 
 

@@ -17,19 +17,18 @@ from flexstage.base.text import printable
 
 
 class ProgressBar:
-    """A bar that follows the steps it is told of; `about` stands before each, `left` are the seconds told last."""
+    """A bar that shows the steps it is called with; `left` are the seconds of the last one."""
 
     def __init__(self, shown: Any | None) -> None:
         self._shown = shown
         self._task = None if shown is None else shown.add_task("starting", total=1.0, left="")
         self._begun = time.monotonic()
-        self.about = ""
         self.left: float | None = None
 
     def step(self, step: Step) -> None:
         """Show a step of a computation."""
         self.left = step.left
-        self._show(f"{self.about}{step.text}", step.fraction)
+        self._show(step.text, step.fraction)
 
     def share(self, text: str, share: float) -> None:
         """Show the share of a work that is done, and how long the rest takes at its pace."""

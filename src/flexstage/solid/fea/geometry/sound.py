@@ -59,7 +59,7 @@ def _is_known(mechanism: Mechanism, cache: Cache) -> bool:
 
 def _remember(mechanism: Mechanism, cache: Cache, found: tuple[Finding, ...]) -> None:
     if not (found or has_imports(mechanism)):
-        keep(cache, _key(mechanism), mechanism.name, b"", SOUND, notice=lambda _finding: None)  # it is checked again then
+        keep(cache, _key(mechanism), mechanism.name, None, SOUND, notice=lambda _finding: None)  # it is checked again then
 
 
 def _key(mechanism: Mechanism) -> str:

@@ -21,23 +21,20 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
 from flexstage.base.storage.store import FOLDER_VARIABLE, cache_folder, write
 from flexstage.solid.fea.jobs.content import content
-from flexstage.solid.fea.jobs.store import from_bytes, versions
+from flexstage.solid.fea.jobs.store import from_bytes, program, to_bytes
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.fea.solver.component import Component
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of files in the cache: how their names end, what is in them, and the method whose code counts as their version."""
+    """A kind of files in the cache: how their names end, and what is in them."""
 
     suffix: str
     noun: str
-    method: str
 
 
-SUPERELEMENTS = Kind(".superelement", "superelement", "solver.reduce")
-HINGES = Kind(".hinge", "6x6", "hinges.hinge")
-SOUND = Kind(".sound", "mark of sound outlines", "geometry.contact")
+SUPERELEMENTS, HINGES, SOUND = Kind(".superelement", "superelement"), Kind(".hinge", "6x6"), Kind(".sound", "mark of sound outlines")
 
 
 @dataclass(frozen=True)
@@ -92,7 +89,7 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, noti
     """
     path = _path(cache, key, kind)
     try:
-        outcome = from_bytes(path.read_bytes(), key, versions(kind.method))
+        outcome = from_bytes(path.read_bytes(), key)
     except FileNotFoundError:
         return None
     except OSError as error:
@@ -114,13 +111,13 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
     return _path(cache, key, kind).is_file()
 
 
-def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
-    """Keep the bytes of a file, whole or not at all.
+def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
+    """Keep a superelement, a 6x6 or a mark in a file, whole or not at all.
 
-    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"", notice=lambda finding: print(finding.where))
+    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", None, notice=lambda finding: print(finding.where))
     lever
     """
-    path = _path(cache, key, kind)
+    path, data = _path(cache, key, kind), to_bytes(element, key)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _remove_old(cache, path.parent, len(data), kind)
@@ -150,4 +147,4 @@ def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
 
 
 def _path(cache: Cache, key: str, kind: Kind) -> Path:
-    return folder_of(cache) / f"{key}-{versions(kind.method).digest}{kind.suffix}"
+    return folder_of(cache) / f"{key}-{hashlib.sha256(program().encode()).hexdigest()[:12]}{kind.suffix}"

@@ -13,7 +13,6 @@ from flexstage.solid.fea.jobs.cache import HINGES
 from flexstage.solid.fea.jobs.memory import Counts, needed
 from flexstage.solid.fea.jobs.parts import Ways, obtain
 from flexstage.solid.fea.jobs.reducing import StoredJob
-from flexstage.solid.fea.jobs.store import to_bytes, versions
 from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy
 
@@ -55,14 +54,13 @@ class HingeJob(StoredJob):
         what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, and {limit / 1e9:.3g} GB are there"
         return Finding(self.name, what, "Free memory, or let it have more")
 
-    def work(self, call: Call) -> bytes:
-        """Compute it; the 6x6 as stored. What is refused is told by the name it has for the user."""
+    def work(self, call: Call) -> HingeSolid:
+        """Compute it. What is refused is told by the name it has for the user."""
         from flexstage.solid.fea.hinges.hinge import Listener, hinge_compliance
 
         try:
             told = Listener(call.report, call.ask)
-            found = hinge_compliance(self.form.part, self.form.material, self.asked, told=told, roots=self.form.roots)
-            return to_bytes(found, self.key, versions(HINGES.method))
+            return hinge_compliance(self.form.part, self.form.material, self.asked, told=told, roots=self.form.roots)
         except DesignError as error:
             kind = f"the {self.form.part.kind}"
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None

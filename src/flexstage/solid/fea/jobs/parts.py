@@ -4,25 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache, partial
+from functools import partial
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
-from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.processes.progress import Progress
+from flexstage.base.session import SESSION
 from flexstage.solid.fea.jobs.cache import Cache, Notice, find, keep, key_of, warn
 from flexstage.solid.fea.jobs.content import KEPT, content
 from flexstage.solid.fea.jobs.install import require_installed
 from flexstage.solid.fea.jobs.reducing import Reduce, StoredJob
 from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all
-from flexstage.solid.fea.jobs.store import from_bytes, versions
 from flexstage.solid.fea.meshing.fineness import Hold, Reduction
 from flexstage.solid.fea.solver.component import Component, with_yielding_ends
 from flexstage.solid.fea.solver.superelement import Superelement, hold_faces
 
 Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
 """Components of a stage with their superelements; equal components share one."""
+
+AnyStored = TypeVar("AnyStored", bound=StoredJob)
 
 _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 
@@ -75,7 +76,7 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
     return jobs
 
 
-@lru_cache(maxsize=KEPT)
+@SESSION.keep(KEPT)
 def content_in_stage(part: Component) -> str:
     """The content of what is reduced for a component, the same for a unit alone and in its stage.
 
@@ -123,20 +124,16 @@ def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
     return {job.key: results[job.key] for job in jobs}
 
 
-def distinct(jobs: Iterable[StoredJob]) -> tuple[StoredJob, ...]:
+def distinct(jobs: Iterable[AnyStored]) -> tuple[AnyStored, ...]:
     """The first job of each key."""
-    first: dict[str, StoredJob] = {}
+    first: dict[str, AnyStored] = {}
     for job in jobs:
         first.setdefault(job.key, job)
     return tuple(first.values())
 
 
-def _take(results: dict[str, Any], ways: Ways, job: StoredJob, data: bytes) -> None:
-    """Take a result as a worker wrote it, and keep it."""
-    result = from_bytes(data, job.key, versions(job.stored.method))
-    if isinstance(result, str):
-        advice = "See that the folder for temporary files (environment variable TMPDIR) keeps what is written to it, and run it again"
-        raise refuse(job.name, f"what its process wrote cannot be used: {result}", advice)
-    results[job.key] = result
+def _take(results: dict[str, Any], ways: Ways, job: StoredJob, found: Any) -> None:
+    """Take a result of a worker, and keep it."""
+    results[job.key] = found
     if ways.cache is not None:
-        keep(ways.cache, job.key, job.name, data, job.stored, notice=ways.notice)
+        keep(ways.cache, job.key, job.name, found, job.stored, notice=ways.notice)

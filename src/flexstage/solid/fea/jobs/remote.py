@@ -22,8 +22,7 @@ from flexstage.base.processes.memory import available
 from flexstage.base.processes.progress import Progress, Step, seconds_left
 from flexstage.solid.fea.jobs.memory import Counts
 from flexstage.solid.fea.jobs.progress import Stage, fraction_done
-from flexstage.solid.fea.jobs.store import versions
-from flexstage.solid.fea.jobs.worker import Job, Task, work
+from flexstage.solid.fea.jobs.worker import Job, work
 
 _MOST_WORKERS = 2
 _PAUSE = 0.02
@@ -104,7 +103,7 @@ class Pool:
 
 def work_all(
     jobs: Iterable[AnyJob],
-    done: Callable[[AnyJob, bytes], None],
+    done: Callable[[AnyJob, Any], None],
     limits: Limits,
     progress: Progress | None = None,
     pool: Pool | None = None,
@@ -178,9 +177,7 @@ class _Child(Generic[AnyJob]):
 class _Run(Generic[AnyJob]):
     """The jobs of one call: those to come, those running, those done."""
 
-    def __init__(
-        self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress, pool: Pool
-    ) -> None:
+    def __init__(self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, Any], None], limits: Limits, progress: Progress, pool: Pool) -> None:
         self.done, self.limits, self.progress, self.pool = done, limits, progress, pool
         self.waiting = [(job, 0, time.monotonic()) for job in jobs]
         self.children: list[_Child[AnyJob]] = []
@@ -210,13 +207,12 @@ class _Run(Generic[AnyJob]):
 
     def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
         memory = available() if self.limits.memory is None else self.limits.memory
-        task = Task(job, attempt, memory, self.limits.seconds, versions())
         try:
             worker = self.pool.worker(job)
         except OSError as error:
             raise _refuse_start(job.name, error) from error
         self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
-        worker.ask(task)
+        worker.ask(job, attempt, memory, self.limits.seconds)
 
     def _hear(self) -> None:
         """Take in what the workers said, waiting a moment for it."""
