@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
-from flexstage.base.number import Array, Number, freeze
+from flexstage.base.number import Array, Number
 from flexstage.base.units.quantity import Quantity
 from flexstage.base.units.unit import quantity_of_unit, show
 from flexstage.mechanism.addresses.address import set_value
@@ -72,9 +72,8 @@ def with_parameters(stage: Mechanism, stated: Mapping[str, Stated], where: str =
         here = f"{where}.{name}"
         try:
             node = NumberNode(parameter(stage, name, here).quantity)
-            number = node.parse(value, here) if isinstance(value, str) else node.fit(freeze(value), here)
-            require([*node.check(number, here), *number_findings(here, number, node)])
-            stage = set_value(stage, PREFIX + name, number)
+            stage = set_value(stage, PREFIX + name, node.parse(value, here) if isinstance(value, str) else value)
+            require(number_findings(here, stage.numbers[name].value, node))
         except DesignError as error:
             findings += error.findings
     require(findings)

@@ -53,13 +53,17 @@ def get(mechanism: Mechanism, address: str) -> Any:
 
 def value_at(mechanism: Mechanism, place: Place) -> Any:
     """Return the value at a place, overrides applied."""
-    value: Any = mechanism
+    return follow(_holder(mechanism, place), place.path)
+
+
+def _holder(mechanism: Mechanism, place: Place) -> Any:
+    """What the path of a place is followed in, overrides applied."""
     if place.misaligned:
-        value = misalignment_of(mechanism.overrides, place.owners[0])
-    elif place.owners:
-        link, part = _link_and_part(mechanism, place)
-        value = link if place.in_link else part
-    return follow(value, place.path)
+        return misalignment_of(mechanism.overrides, place.owners[0])
+    if not place.owners:
+        return mechanism
+    link, part = _link_and_part(mechanism, place)
+    return link if place.in_link else part
 
 
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
@@ -74,11 +78,13 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     0.04
     """
     place = locate(mechanism, address)
-    fitting = place.node.fit(freeze(value), address)
     changed, lost = mechanism, [place.address]
     for path in with_mirror(place.path):
         written = replace(place, path=path)
-        changed = _without_formulas(_write(changed, written, fitting), written.address)
+        try:
+            changed = _without_formulas(_write(changed, written, freeze(value)), written.address)
+        except DesignError as error:
+            raise DesignError(replace(finding, where=address) for finding in error.findings) from None
     if place.number:
         moved = dependents(changed, place.number)
         changed = reduce(_work_out, moved, changed)
@@ -243,7 +249,8 @@ def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
 
 def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
     if not place.owners:
-        return replace_member(mechanism, place.path, value)
+        return replace_member(mechanism, place.path, value)  # type: ignore[no-any-return]
+    value = follow(replace_member(_holder(mechanism, place), place.path, value), place.path)
     overrides = dict(mechanism.overrides)
     for key, path in _overrides(mechanism, place.owners[-1]):
         depth = len(path)
