@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 27_100,
+    "base": 27_300,
     "spatial": 3_900,
     "parts": 37_700,
     "beams": 25_500,
-    "mechanism": 55_800,
+    "mechanism": 55_000,
     "cases": 1_200,
-    "models": 91_000,
-    "analysis": 67_400,
+    "models": 90_800,
+    "analysis": 66_900,
     "show": 64_100,
-    "solid": 77_500,
-    "experiment": 98_500,
-    "control": 153_600,
+    "solid": 76_700,
+    "experiment": 98_300,
+    "control": 153_500,
     "studies": 50_400,
     "apps": 34_600,
     ".": 400,
-    "all": 788_100,
+    "all": 785_700,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
