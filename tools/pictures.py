@@ -216,6 +216,16 @@ def plan() -> Any:
     return plan_figure(mechanism, still_data(mechanism))
 
 
+def xy_plan() -> Any:
+    """The dimensioned plan of the stage in docs/blank-sheet.md."""
+    with TemporaryDirectory() as place:
+        for block in blocks("docs/blank-sheet.md"):
+            if (name := block.word("file")) is not None:
+                Path(place, name).write_text(block.text, encoding="utf-8")
+        mechanism = fs.load(Path(place, "third.toml"))
+    return plan_figure(mechanism, still_data(mechanism))
+
+
 def polar() -> Any:
     """Stiffness in the plane by direction."""
     return directional_figure(fs.statics(fs.lumped(double_triangle())))
@@ -414,6 +424,7 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "six-by-six": (six_by_six, "compliance of a leaf: at its centre nearly diagonal, at its end with couplings of forces and rotations"),
     "margins": (margins, "a loop's curve in the complex plane, with its gain margin, its phase margin and its distance from -1"),
     "plan": (plan, "dimensioned plan of the double-triangular stage"),
+    "xy-plan": (xy_plan, "dimensioned plan of an XY stage with three piezo struts and three gauges"),
     "polar": (polar, "stiffness of the double-triangular stage in the plane by direction: circles"),
     "budget": (budget, "lost motion of the six actuators by hinge"),
     "modes": (modes, "shapes of the platform's six modes"),

@@ -24,7 +24,6 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
 from flexstage.control.study.file import example, loads_setup
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options
 from flexstage.experiment.records.record import Channel, Record, Role, in_memory
 from flexstage.mechanism.assembly.expand import expand
@@ -37,6 +36,7 @@ from flexstage.studies.tolerances.file import loads_tolerance
 from tests.roundtrip.designs import TEXT
 from tests.roundtrip.mutation import altered, mutated, noise, reshaped
 from tests.roundtrip.records import awkward_record, awkward_responses, write_version_73
+from tests.roundtrip.records import write_form as write
 
 GUIDE = """format = "flexstage 1"
 name = "guide"

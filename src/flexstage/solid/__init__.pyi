@@ -17,14 +17,14 @@ from flexstage.solid.fea.meshing.fineness import (
 from flexstage.solid.fea.hinges.hinge import (
     hinge_compliance as hinge_compliance,
 )
+from flexstage.solid.results.read import (
+    model as model,
+)
 from flexstage.solid.results.hinges import (
     solid_hinges as solid_hinges,
 )
 from flexstage.solid.results.modes import (
     fea_modes as fea_modes,
-)
-from flexstage.solid.results.read import (
-    model as model,
 )
 from flexstage.solid.show.moving import (
     to_glb as to_glb,

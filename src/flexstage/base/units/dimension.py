@@ -146,8 +146,8 @@ def _definitions(text: str) -> dict[str, str]:
     return {name: meaning for names, _, meaning in lines for name in names.split()}
 
 
-_UNITS, _FACTORS = _definitions(_DEFINITIONS), _definitions(_PREFIXES)
-_UNITS |= {f"{name}s": meaning for name, meaning in _UNITS.items() if len(name) > 2 and name.islower()}
+_SINGULAR, _FACTORS = _definitions(_DEFINITIONS), _definitions(_PREFIXES)
+_UNITS = _SINGULAR | {f"{name}s": meaning for name, meaning in _SINGULAR.items() if len(name) > 2 and name.islower()}
 
 
 @functools.cache

@@ -258,19 +258,19 @@ class _Stored:
 
 
 def _stored(file: Hdf) -> _Stored:
-    tables = (file.read(name) for name in ("variables", "responses"))
+    variables, responses = (file.read(name) for name in ("variables", "responses"))
     failures = dict[int, str]()
     if file.arrays["failures"].shape[0]:
         failures = dict(zip(file.read("failures", column="design").tolist(), file.texts("failures", "reason"), strict=True))
     made = file.attributes.get("made", ())
     computed = file.read("computed").astype(bool)
-    return _Stored(_count(file, "piece"), *tables, computed, failures, set(made if isinstance(made, tuple) else (str(made),)))
+    return _Stored(_count(file, "piece"), variables, responses, computed, failures, set(made if isinstance(made, tuple) else (str(made),)))
 
 
 def _empty(study: Study, size: int) -> _Stored:
     designs = study.plan.designs
-    tables = (np.full((designs, len(names)), np.nan) for names in columns_of(study)[0])
-    return _Stored(size, *tables, np.zeros(-(-designs // size), dtype=bool), {}, set())
+    variables, responses = (np.full((designs, len(names)), np.nan) for names in columns_of(study)[0])
+    return _Stored(size, variables, responses, np.zeros(-(-designs // size), dtype=bool), {}, set())
 
 
 def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
