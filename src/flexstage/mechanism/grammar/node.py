@@ -646,8 +646,6 @@ def require_single(value: Any, where: str) -> None:
     """Raise `DesignError` for a number that a file cannot hold."""
     if not isinstance(value, (int, float)):
         raise refuse(where, "it is a batch or complex, and a file holds one design", "Pick one design before writing it")
-    if value - value != 0.0:
-        raise refuse(where, f"found {value}, which is not finite", "Give a finite number")
 
 
 def is_bare(raw: Any) -> bool:
