@@ -5,13 +5,14 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TypeAlias, cast
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
+from flexstage.base.session import SESSION
 from flexstage.mechanism.addresses.path import complete, has_member, replace_member
 from flexstage.mechanism.assembly.likeness import drawn_units, link_lineage
 from flexstage.mechanism.assembly.misalignment import MISALIGNED, misalign
@@ -276,7 +277,7 @@ class Same:
         return isinstance(other, Same) and self.mechanism is other.mechanism
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _assembly(key: Same) -> Assembly:
     """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism

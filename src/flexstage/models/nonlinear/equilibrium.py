@@ -95,12 +95,6 @@ class State:
         loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
         return State(self.model, loads, hold, pose, (), status, iterations, residual, reached, self.held)
 
-    def some(self, cases: Array) -> State:
-        """Some of the cases, by their numbers, in a row."""
-        status, iterations, residual, reached = (getattr(self, name).ravel()[cases] for name in TOLD)
-        loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
-        return State(self.model, loads, hold, pose, (len(cases),), status, iterations, residual, reached, self.held)
-
     def place(self, name: str) -> tuple[int, Array]:
         """The number of a body, and the drawn arm of its reference or of a named point on it."""
         return place(self.model, name)

@@ -17,6 +17,7 @@ from flexstage.apps.studio.design.answers import Reading
 from flexstage.apps.studio.protocol import Amount, Channel, Problem
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import first_design
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import Bound, Quantity
 from flexstage.base.units.unit import show
 from flexstage.mechanism.addresses.address import provenance
@@ -36,7 +37,7 @@ _FROM_NOUGHT = 10.0
 """How far it goes from nought, in the unit that is shown."""
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def design(text: str, file: str) -> Mechanism:
     """The design that a text says; raises `DesignError` with all that is wrong with it."""
     return loads(text, where=Path(file).name, folder=Path(file).parent)
@@ -107,7 +108,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, float, NumberNode]]:
         yield from place.node.numbers(value, place.address)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _stored_values(text: str, file: str) -> Mapping[str, float]:
     try:
         return {address: float(value) for address, value, _ in _numbers(design(text, file)) if np.ndim(value) == 0}
