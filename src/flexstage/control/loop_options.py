@@ -125,14 +125,8 @@ class LoopOptions:
                 changes |= dict(each)
             except DesignError as error:
                 findings += error.findings
-        while True:
-            try:
-                return read_setup(self.setup, changes), findings
-            except DesignError as error:
-                wrong = {address: each for each in error.findings for address in changes if each.where.startswith(address)}
-                if not wrong:
-                    raise DesignError([*findings, *error.findings]) from None
-                findings += [Finding(changes.pop(address).option, each.what, each.advice) for address, each in wrong.items()]
+        found, wrong = read_setup(self.setup, changes)
+        return found, [*findings, *wrong]
 
     def _plain(self) -> Iterator[tuple[str, Change]]:
         given = vars(self)
@@ -165,10 +159,10 @@ class LoopOptions:
 
     def _trajectory(self) -> Iterator[tuple[str, Change]]:
         word = self.trajectory
-        if word is not None:
-            is_file = word.lower().endswith(".csv")
-            stated = {"kind": "file", "file": word} if is_file else {"kind": word}
-            yield "trajectory", Change("--trajectory", lambda old: old if old and old.get("kind") == word else stated)
+        is_file = word is not None and word.lower().endswith(".csv")
+        if word is not None or self.amplitude is not None:
+            stated = {"kind": "file", "file": word} if is_file else {"kind": word or "step"}
+            yield "trajectory", Change("--trajectory", lambda old: old if old and word in (None, old.get("kind")) else stated)
         if self.amplitude is not None:
             sizes = {
                 name: f"{size!r} {'rad' if name.startswith('r') else 'm'}" for name, size in motions(self.amplitude, "--amplitude").items()
