@@ -36,17 +36,17 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
 
 
 @dataclass(frozen=True)
-class Change:
+class SetupChange:
     """A raw value that goes before the file's, or a function of the file's own; `option` names it in findings."""
 
     option: str
     value: Any
 
 
-def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, Change]) -> tuple[LoopSetup, list[Finding]]:
+def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, SetupChange]) -> tuple[LoopSetup, list[Finding]]:
     """Return the set-up in a file, none: the default, with the changes by address that fit, and what is wrong with the others.
 
-    >>> read_setup(None, {"controller.bandwidth": Change("--bandwidth", "30 Hz")})[0].controller.bandwidth
+    >>> read_setup(None, {"controller.bandwidth": SetupChange("--bandwidth", "30 Hz")})[0].controller.bandwidth
     30.0
     """
     text, where = ("", "") if path is None else (read_text(path), os.fspath(path))

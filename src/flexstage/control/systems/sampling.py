@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.signal
+import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -33,7 +33,7 @@ class Trajectory(Protocol):
         ...
 
 
-def require_positive(where: str, **numbers: float | None) -> None:
+def require_positive(where: str, numbers: Mapping[str, float | None]) -> None:
     """Refuse what is stated and not above 0, or not finite."""
     wrong = {name: value for name, value in numbers.items() if value is not None and not 0.0 < value < np.inf}
     require(Finding(f"{where}{name}", f"it is {value:g}", "Give a positive number") for name, value in wrong.items())

@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.interpolate import PPoly
+import scipy
 
 from flexstage.base.number import Array
 
 
-class Pieces(PPoly):  # type: ignore[misc]
-    """A piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot."""
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """A piecewise polynomial in time [s] (a `PPoly` of scipy), a column a coordinate; at rest before its first and after its last knot."""
+
+    curve: Any
 
     @property
     def duration(self) -> float:
         """Time of the last knot [s]."""
-        return float(self.x[-1])
+        return float(self.curve.x[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
         """Values (n, c), or those of the derivative of an `order`."""
-        return np.asarray(self(np.clip(times, self.x[0], self.x[-1]), order))
+        return np.asarray(self.curve(np.clip(times, self.curve.x[0], self.curve.x[-1]), order))
 
 
 def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
@@ -32,7 +37,7 @@ def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
     """
     kept = [(time, coefficients) for time, coefficients in parts if time > 0.0]
     knots = np.concatenate([[0.0], np.cumsum([time for time, _ in kept])])
-    return Pieces(np.stack([each[::-1] for _, each in kept], axis=1), knots)
+    return Pieces(scipy.interpolate.PPoly(np.stack([each[::-1] for _, each in kept], axis=1), knots))
 
 
 def rest(position: Array) -> Array:

@@ -31,7 +31,7 @@ def profile(distance: float, limits: Limits) -> Pieces:
     >>> move.duration, move.at(np.array([0.5, 1.0])).ravel().tolist()
     (1.0, [0.5, 1.0])
     """
-    require_positive("limits: ", **vars(limits))
+    require_positive("limits: ", vars(limits))
     jerk = limits.jerk
     short = min(limits.acceleration / jerk, (limits.speed / jerk) ** 0.5, (0.5 * distance / jerk) ** (1.0 / 3.0))
     top = jerk * short

@@ -41,7 +41,7 @@ class Raster(CheckedFields):
         super().__post_init__()
         """Refuse numbers that make no raster."""
         numbers = {"length": self.length, "pitch": self.pitch, "lines": self.lines, "speed": self.speed, "acceleration": self.acceleration}
-        require_positive("raster: ", **numbers)
+        require_positive("raster: ", numbers)
 
     @property
     def overshoot(self) -> float:

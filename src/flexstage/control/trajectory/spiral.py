@@ -35,7 +35,7 @@ class Spiral(CheckedFields):
     def __post_init__(self) -> None:
         super().__post_init__()
         """Refuse numbers that make no spiral, and ramps that it is too short for."""
-        require_positive("spiral: ", radius=self.radius, pitch=self.pitch, speed=self.speed)
+        require_positive("spiral: ", {"radius": self.radius, "pitch": self.pitch, "speed": self.speed})
         if not 0.0 <= self.ramp <= self._whole / self.speed:
             what = f"{self.ramp:g} s, where the spiral takes {self._whole / self.speed:g} s at its full speed"
             raise refuse("spiral: ramp", what, "Shorten the ramp, or slow down")
