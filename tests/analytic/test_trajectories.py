@@ -51,9 +51,9 @@ def test_profiles_take_the_least_time(distance, speed, acceleration, jerk):
     # Bang-bang: some limit is reached at every moment, so no profile is shorter. Jerk runs +j, 0, -j, 0, -j, 0, +j and rests only where
     # acceleration or speed is at its limit.
     move = profile(distance, Limits(speed, acceleration, jerk))
-    middles = 0.5 * (move.curve.x[1:] + move.curve.x[:-1])
+    middles = 0.5 * (move.knots[1:] + move.knots[:-1])
     reached = [np.abs(move.at(middles, order)[:, 0]) / limit for order, limit in ((1, speed), (2, acceleration), (3, jerk))]
-    long = np.diff(move.curve.x) > 1e-6 * move.duration
+    long = np.diff(move.knots) > 1e-6 * move.duration
     assert np.all(np.max(reached, axis=0)[long] >= 1.0 - 1e-6)
 
 

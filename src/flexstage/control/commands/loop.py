@@ -20,7 +20,8 @@ from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.compare import Comparison, compare_controllers
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
+from flexstage.experiment.pipeline import Identification, identification, usable_measurement
+from flexstage.experiment.progress import Told, followed
 from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
@@ -89,7 +90,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     exports = export or []
     require_names(exports, hardware)
     own = [(f"--{name}", context.params[name]) for name in ("json", "xlsx", "report")]
-    require_writable([*own, *written_files(exports, hardware)], [])
+    require_writable([*own, *written_files(exports, hardware)])
     texts = RecordTexts(inputs, outputs, channels, units, arrays=arrays, accept_fault=accept_fault)
     if not record:
         texts.require_unsaid()
@@ -120,7 +121,8 @@ def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Id
     if not record:
         return None
     reader = texts.options()
-    return identification(usable_measurement(open_records(record, reader), reader.accept_faults, told=tell), told=tell)
+    with followed(tell):
+        return identification(usable_measurement(open_records(record, reader), reader.accept_faults))
 
 
 def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model: Model | None) -> CommandResult:

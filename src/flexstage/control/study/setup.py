@@ -32,7 +32,7 @@ from flexstage.control.study.choices import Axes, Axis, Compensation, Controller
 from flexstage.control.study.hardware.amplifier_kinds import AMPLIFIERS
 from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.mechanism.grammar.node import ChoiceNode, Wanted
+from flexstage.mechanism.grammar.node import ChoiceNode
 from flexstage.models.theory import Model
 
 _PEAK = Bound(low=1.0, open_low=True)
@@ -50,10 +50,6 @@ class KindNode(ChoiceNode):
     def words(self) -> dict[str, Any]:
         """The kinds by what a file calls them."""
         return {each.value: each for each in ControllerKind} | {name: OfferedKind(name) for name in CONTROLLERS}
-
-    def wanted(self, value: Any) -> Wanted:
-        """One of the kinds."""
-        return None if value in self.words.values() else ("a kind of controller", f"Give one of {', '.join(self.words)}")
 
 
 KINDS = KindNode(ControllerKind)

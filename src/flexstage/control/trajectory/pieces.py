@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy
@@ -14,18 +13,23 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """A piecewise polynomial in time [s] (a `PPoly` of scipy), a column a coordinate; at rest before its first and after its last knot."""
+    """A piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot.
 
-    curve: Any
+    `coefficients` (k, m, c) have the highest power first, each from its own knot; `knots` (m + 1,).
+    """
+
+    coefficients: Array
+    knots: Array
 
     @property
     def duration(self) -> float:
         """Time of the last knot [s]."""
-        return float(self.curve.x[-1])
+        return float(self.knots[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
         """Values (n, c), or those of the derivative of an `order`."""
-        return np.asarray(self.curve(np.clip(times, self.curve.x[0], self.curve.x[-1]), order))
+        whole = scipy.interpolate.PPoly(self.coefficients, self.knots)
+        return np.asarray(whole(np.clip(times, self.knots[0], self.knots[-1]), order))
 
 
 def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
@@ -37,7 +41,7 @@ def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
     """
     kept = [(time, coefficients) for time, coefficients in parts if time > 0.0]
     knots = np.concatenate([[0.0], np.cumsum([time for time, _ in kept])])
-    return Pieces(scipy.interpolate.PPoly(np.stack([each[::-1] for _, each in kept], axis=1), knots))
+    return Pieces(np.stack([each[::-1] for _, each in kept], axis=1), knots)
 
 
 def rest(position: Array) -> Array:

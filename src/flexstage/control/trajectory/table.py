@@ -81,8 +81,7 @@ def from_file(path: str | os.PathLike[str]) -> Table:
     """
     place = Path(path)
     layout = layouts.read_layout(place)
-    lines = tabled.index_lines(place, layout.start)
-    samples = tabled.TableSamples(place, layout, lines, tuple(range(len(layout.names))), lines.count)
+    samples = tabled.index_table(place, layout)
     channels = tuple(Channel(name, plain_unit(unit)) for name, unit in zip(layout.names, layout.units, strict=True))
     if channels[0].name.lower() not in ("time", "t"):
         raise refuse(str(place), f'its first column is "{channels[0].name}"', 'Begin with times, as "time [s], x [um]"')
