@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.difference import Comparison
 from flexstage.analysis.complete import Analysis
+from flexstage.parts.profile import single
 from flexstage.show.display import format_value, number, percent
 from flexstage.show.page import Fact, Facts, Headline, Prose, Section, section
 from flexstage.show.table import first_design, result_table
@@ -99,12 +100,12 @@ def _zero_if_noise(share: float) -> float:
 def _reach_facts(analysis: Analysis) -> Iterator[Fact]:
     if analysis.workspace is None:
         return
-    single = analysis.workspace.corrected or analysis.workspace.single_axis
-    if single.coordinates:
-        name = single.coordinates[0]
-        value = float(first_design(single.symmetric, 1)[0])
+    strokes = analysis.workspace.corrected or analysis.workspace.single_axis
+    if strokes.coordinates:
+        name = strokes.coordinates[0]
+        value = float(first_design(strokes.symmetric, 1)[0])
         yield Fact(f"Stroke along {name}", f"±{format_value(value, 'rad' if name.startswith('r') else 'm', 4)}", "one axis at a time")
     stress = analysis.workspace.stress
     if stress is not None and stress.links:
-        least = float(first_design(np.atleast_1d(stress.min_safety), 1)[0])
+        least = single(stress.min_safety)
         yield Fact("Least safety factor", number(least, 3), f"against yield, in {stress.weakest}")

@@ -13,6 +13,7 @@ from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.number import first_design
+from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
 from flexstage.show.tables.lost_motion import loss_table
@@ -208,14 +209,10 @@ def _strength_text(analysis: Analysis) -> str | None:
     buckling = analysis.buckling if reach is None else reach.buckling
     said: list[str] = []
     if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {_first(reach.stress.min_safety, 4)} against yield, in {reach.stress.weakest}")
+        said.append(f"least safety factor {number(single(reach.stress.min_safety), 4)} against yield, in {reach.stress.weakest}")
     if buckling is not None:
-        said.append(f"load factor of buckling {_first(buckling.min_factor, 4)}")
+        said.append(f"load factor of buckling {number(single(buckling.min_factor), 4)}")
     return f"Strength: {', '.join(said)}." if said else None
-
-
-def _first(values: object, digits: int) -> str:
-    return number(float(np.ravel(np.real(np.asarray(values)))[0]), digits)
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
