@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, dataclass_transform
+from typing import dataclass_transform
 
 from flexstage.base.lazy import Late
 
@@ -41,6 +41,6 @@ class Result(InNotebook):
     (2.0, False)
     """
 
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
         dataclass(frozen=True, eq=False)(cls)
