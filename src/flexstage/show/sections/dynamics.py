@@ -45,10 +45,6 @@ def mode_section(analysis: Analysis, data: StageData) -> Section | None:
         "Undamped modes, strokes held. A mode is the platform's if the platform has a large share of the kinetic energy; modes of single "
         "units that lie near the platform's are listed as local neighbours."
     )
-    if analysis.loaded is not None and analysis.loaded.text:
-        text = f"{text} {analysis.loaded.text}"
-    if analysis.second_order is not None:
-        text = f"{text} {analysis.second_order.text}"
     shapes = tuple(_shapes(modes, data))
     gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []
     return section("Modes", [Prose(text), mode_table(modes), *gallery])

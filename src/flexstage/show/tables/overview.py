@@ -75,19 +75,27 @@ def count_text(count: int, thing: str) -> str:
 
 
 def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
-    """Requirements, the platform's axes and modes, lost motion, and what its parts bear."""
+    """Requirements, then the summary without the notes of its first table."""
     yield verdict_table(analysis.verdicts)
+    yield from summary_tables(analysis, explained=False)
+
+
+def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | str | None]:
+    """The platform's axes and modes, lost motion, and what its parts bear; the first table `explained` by notes.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> [each.title for each in summary_tables(analyse(double_triangle(), Model.IDEAL), explained=True) if isinstance(each, Table)]
+    ['Platform']
+    """
     yield load_line(analysis)
     yield small_line(analysis)
-    yield _without_notes(axis_table(analysis))
+    axes = axis_table(analysis)
+    yield axes if explained or axes is None else replace(axes, notes=())
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.modes is None else lowest_mode(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield _strength_text(analysis)
-
-
-def _without_notes(table: Table | None) -> Table | None:
-    return None if table is None else replace(table, notes=())
 
 
 def axis_table(analysis: Analysis) -> Table | None:
