@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Annotated, Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import stack
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.beams.mass import mass
@@ -72,7 +72,7 @@ class Caveats:
         return tuple(each for each in self.defaults if kind not in each.without)
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def caveats(mechanism: Mechanism) -> Caveats:
     """Warnings and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
 

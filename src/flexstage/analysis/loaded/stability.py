@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 from typing import Annotated, Any, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -20,6 +20,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, first_design, stack
 from flexstage.base.record import Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse, below, few
 from flexstage.base.units.quantity import LENGTH, RATIO
 from flexstage.beams.compliance import locked_freedoms as locked_by
@@ -122,7 +123,7 @@ def _lower(factor: float) -> float:
     return 100.0 * (1.0 - np.sqrt(1.0 - 1.0 / factor))
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
     """Load factors of the whole stage; with `limits`, of the worst strokes between them too. Kept for what asks the same next.
 
@@ -160,7 +161,7 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     )
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _pieces(mechanism: Mechanism, model: LinearModel) -> _Pieces:
     """The stage in pieces: the same with and without strokes."""
     return _Pieces.of(mechanism, model)

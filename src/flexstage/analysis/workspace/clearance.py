@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -14,6 +13,7 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
 from flexstage.base.number import Array, stack
 from flexstage.base.record import INNER, VIEW, Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.mechanism.assembly.expand import expand
@@ -94,7 +94,7 @@ class Clearance(Result):
                 yield Finding(f"envelope.{axis}", f"the stage is {shown[0]} wide, the envelope {shown[1]}", f"Look at {ends}")
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def clearance(mechanism: Mechanism) -> Clearance:
     """The bounding box of all outlines against the envelope, and the outlines that enter the opening (a rectangle about the z axis).
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -14,6 +14,7 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.incidence import layout, twist_at
@@ -151,7 +152,7 @@ def stroke_actuators(mechanism: Mechanism) -> dict[str, StrokeActuator]:
     return {name: part for name, part in parts.items() if isinstance(part, StrokeActuator)}
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
     """Strokes around the bias voltage, or around the middle of the range where none is stated.
 
