@@ -26,6 +26,11 @@ def test_releases_have_a_version_and_a_date() -> None:
     assert not any(release.endswith("unreleased") for release in releases[1:])
 
 
+def test_a_release_has_eighty_lines_at_most() -> None:
+    releases = re.split(r"^## ", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]
+    expect_none((each.splitlines()[0] for each in releases if len(each.splitlines()) > 80), "shorten it: one line for each change")
+
+
 def test_releases_descend() -> None:
     versions = [tuple(map(int, found[1].split("."))) for release in headings(2) if (found := RELEASE.fullmatch(release)) and found[1]]
     assert versions == sorted(set(versions), reverse=True)
@@ -48,6 +53,6 @@ def test_the_citation_names_the_version() -> None:
 
 
 def test_readme_has_no_links_that_an_index_page_breaks() -> None:
-    # The index shows it without the files beside it.
-    links = re.findall(r"\]\((?!https://|#)[^)]*\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    # The index shows it without the files of the project; a picture leaves its text there.
+    links = re.findall(r"(?<!!)\[[^\]]*\]\((?!https://|#)[^)]*\)", (ROOT / "README.md").read_text(encoding="utf-8"))
     expect_none(links, "name the file in backticks, or give the whole address")
