@@ -62,10 +62,10 @@ from flexstage.studies.sweeps.effects import effects as effects_of
 from flexstage.studies.sweeps.execution.run import Run, sweep
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.sweeps.show.figures import effects_figure
-from flexstage.studies.sweeps.show.interaction_figures import pairs_figure, strongest_figure
+from flexstage.studies.sweeps.show.interaction_figures import strongest_figure
 from flexstage.studies.tolerances.file import loads_tolerance
 from flexstage.studies.tolerances.run import Toleranced, tolerance
-from flexstage.studies.tolerances.show.figures import crosstalk_figure, distributions_figure
+from flexstage.studies.tolerances.show.figures import distributions_figure
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.closed_forms import (
     paros_weisbord_rotation_simplified,
@@ -356,11 +356,6 @@ def effects() -> Any:
     return effects_figure(*_study("study.toml"))
 
 
-def pairs() -> Any:
-    """What pairs of variables do together."""
-    return pairs_figure(_study("arms.toml")[1])
-
-
 def strongest() -> Any:
     """How the strongest pairs act."""
     return strongest_figure(*_study("arms.toml"))
@@ -382,11 +377,6 @@ def _made() -> Toleranced:
 def made() -> Any:
     """What copies of the shipped stage do, against their limits."""
     return distributions_figure(_made())
-
-
-def crosstalk() -> Any:
-    """Crosstalk of these copies, commanded by the drawn stage's mapping."""
-    return crosstalk_figure(_made().summary.crosstalk[0])
 
 
 @cache
@@ -442,9 +432,7 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "compared": (compared, "frequencies of six modes by theory and as measured, and how far theory is off"),
     "hysteresis": (hysteresis, "loops of a stack with the model over them, the model's error, and the volts of the inverse"),
     "tolerance": (made, "distributions of lost motion and frequency over copies of the stage, with limits"),
-    "crosstalk": (crosstalk, "pose errors per command of copies of the stage, as a matrix of means and deviations"),
     "effects": (effects, "mean frequency, lost motion and mass over the thickness of necks, plate and notch"),
-    "pairs": (pairs, "shares of variance of stroke and lost motion by the arm, the notch, and both together"),
     "strongest": (strongest, "lost motion over the arm, for thin and thick notches"),
     "optimum": (optimum, "the lowest frequency over accepted designs of three searches, and where each variable goes in its range"),
     "loop": (
