@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import scipy
 
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.models.linear.elimination import unlike
 from flexstage.models.linear.large import lowest
 from flexstage.models.linear.model import LinearModel
@@ -50,7 +50,7 @@ def eigen(model: LinearModel) -> Eigen:
     return _kept(model)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _kept(model: LinearModel) -> Eigen:
     """Of one design, kept for what asks the same model next: modes, frequencies of a response, the response itself."""
     return _solve(model)

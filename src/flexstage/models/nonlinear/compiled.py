@@ -13,6 +13,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.base.processes.native import kernel_library
+from flexstage.base.session import SESSION
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import gauss
 from flexstage.models.nonlinear.graph import Rest
@@ -84,7 +85,7 @@ def kernel() -> ctypes.CDLL | None:
     return library
 
 
-@functools.lru_cache(maxsize=64)
+@SESSION.keep(64)
 def tables(model: Nonlinear) -> Tables | None:
     """The stage's tables; `None` where it has something that the kernel does not know.
 
