@@ -11,15 +11,12 @@ from flexstage.apps.cli.commands import COMMANDS, Command, LazyCommand
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "commands.md"
 _HEAD = """\
----
-orphan: true
----
-
 # Command reference
 
-This page lists every command with its arguments and options. It is generated from the help texts: `flexstage COMMAND --help` prints the same.
+This page lists every command with its arguments and options. It is generated from the help texts of `flexstage COMMAND --help`.
 
-Words in capital letters are values to fill in. Quantities have a [unit of measurement](design-file.md#values). A repeatable option may occur several times.
+Words in capital letters are values to fill in. Quantities have a [unit of measurement](design-file.md#values).
+A repeatable option may occur several times.
 """
 
 
