@@ -160,9 +160,9 @@ def equilibrium(
     `hold` imposes coordinates of bodies and points (`platform.y`: displacement [m]; `platform.rz`: component of the rotation vector [rad])
     and finds what holds them. `weight` and `stated` are shares of gravity and of stated forces and preloads. Wrenches are dead: they keep
     their directions. Every case starts from the drawn position, or from `start`, and takes its whole load at once, or in steps, or by arc
-    length up to where the load turns; one without an equilibrium that is found so is NaN and says so in `status`. So is a stable one found
-    from the drawn position that is not the continuation of the unloaded stage as all its loads and held coordinates grow together, unless
-    `options` go `past` limits or take no `arcs`. Raises `DesignError` for names that the stage does not have.
+    length up to where the load turns; one without an equilibrium that is found so is NaN and says so in `status`. So is one found from the
+    drawn position that is not the continuation of the unloaded stage, or is unstable, as all its loads and held coordinates grow together,
+    unless `options` go `past` limits or take no `arcs`. Raises `DesignError` for names that the stage does not have.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear

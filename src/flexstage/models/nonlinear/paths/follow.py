@@ -101,7 +101,7 @@ def continued(start: Task, end: Task) -> Found:
     """The equilibrium (of one case) that continues that of `start` as loads and held coordinates go in proportion to those of `end`.
 
     An equilibrium of `end` that is next to the start, or the path of which begins at one that is not stable, is returned as it is. So is
-    one that is not stable where the path has no stable one, or bends off before. Else `status` is `CRITICAL` where the path has a limit
+    one that is not stable where the path bends off before. Else `status` is `CRITICAL` where the path has a limit
     point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the share `reached`.
     """
     model, hold = end.model, end.hold
@@ -119,7 +119,7 @@ def continued(start: Task, end: Task) -> Found:
         return whole
 
     def lost(status: Status, reached: float) -> Found:
-        return whole if after.motions else replace(whole, status=np.array([status]), reached=np.array([reached]))
+        return replace(whole, status=np.array([status]), reached=np.array([reached]))
 
     try:
         followed = follow_to_event(course, begin, 1.0, 1e-6, length=1.0 / begin.slope)
