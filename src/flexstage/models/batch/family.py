@@ -1,4 +1,4 @@
-"""Families of designs that differ in some numbers: their descriptions, and what the kernel takes of them."""
+"""Families of designs that differ in some numbers: their descriptions, and the input of the kernel."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.batch.graph import SHAPES, Topology, distinct_links, topology
 
 INERTIA_ENTRIES = np.array([0, 1, 2, 0, 3, 4, 4, 5, 5, 5]), np.array([0, 5, 3, 4, 3, 3, 4, 3, 4, 5])
-"""Where the numbers of an inertia stand in its 6x6 matrix."""
+"""Position of the numbers of an inertia in its 6x6 matrix."""
 
 Draw = Callable[[tuple[Array, ...]], Mechanism]
-"""What makes a description of numbers (...), one array each."""
+"""Function from numbers (...), one array each, to a description."""
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
     """Designs that differ in P numbers, around a `mechanism`; `nominal` (P,) are its own.
 
-    `points` (3,): where the reference point of the nominal design is in each body that does not state one; there others are seen from.
+    `points` (3,): reference point of the nominal design in each body that does not specify one, used for all designs.
     """
 
     mechanism: Mechanism
@@ -41,12 +41,12 @@ class Family:
 
     @cached_property
     def located(self) -> tuple[Place, ...]:
-        """Where the addresses point."""
+        """Locations of the addresses in the description."""
         return tuple(locate(self.mechanism, address) for address in self.addresses)
 
 
 def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
-    """The family of a design and the addresses of the numbers that vary; raises `DesignError` for addresses there are none of.
+    """Build the family of a design and the addresses of the numbers that vary; raises `DesignError` for unknown addresses.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> family(double_triangle(), ("parts.neck.thickness",)).nominal.round(6).tolist()
@@ -60,7 +60,7 @@ def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
 
 
 def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
-    """The family of the descriptions that `draw` makes of numbers with these names, around those of the `nominal` ones (P,).
+    """Build the family of the descriptions that `draw` makes of numbers with these names, around the `nominal` ones (P,).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> def leaves(columns):
@@ -80,7 +80,7 @@ def _family(plain: Mechanism, names: tuple[str, ...], nominal: Array) -> Family:
 
 
 def describe(family_: Family, values: Array) -> Mechanism:
-    """The description of many designs, from their numbers (b, P).
+    """Describe many designs by their numbers (b, P).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = family(double_triangle(), ("parts.neck.thickness",))
@@ -97,7 +97,7 @@ def describe(family_: Family, values: Array) -> Mechanism:
 
 
 def numbers_of(family_: Family, values: Array) -> Array:
-    """What the kernel takes of designs given by (b, P): (numbers, b), in the order of `graph.SHAPES`.
+    """Compute the kernel input of designs given by (b, P): (numbers, b), in the order of `graph.SHAPES`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> numbers_of(family(double_triangle(), ("parts.neck.thickness",)), np.array([[1.5e-3], [1.6e-3]])).shape

@@ -1,9 +1,12 @@
-"""Elimination of the constraints of a large stage, body by body: the work grows with the stage, not with its square.
+"""Block elimination of the constraints of a large stage, body by body: the cost grows linearly with the stage, not quadratically.
 
-A body's rows are turned (pivoted QR of its six columns) into some that give its coordinates from those of its neighbours, and others in
-which it does not occur and that bind the neighbours to one another. Coordinates that no row holds are idle motions; rows that vanish are
-redundant. Bodies with the fewest neighbours go first, where these are alike such that fewest wait for one another: idle motions then take
-few bodies along. The platform and the strokes are kept.
+A pivoted QR of the six columns of a body splits its rows. Some give its coordinates from the coordinates of its neighbours; the others do
+not contain the body and constrain the neighbours only.
+
+Coordinates without a row are free internal modes; zero rows are redundant constraints.
+
+Bodies with the fewest neighbours come first, then those whose neighbours wait least, so that free internal modes involve few bodies. The
+platform and the strokes are kept.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ _RANK = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class _Group:
-    """Rows (m, c) over some `blocks` of coordinates, and what each is made of: `shares` (m, k) of the constraints `made` (k,)."""
+    """Rows (m, c) over some `blocks` of coordinates, as combinations `shares` (m, k) of the constraints `made` (k,)."""
 
     blocks: tuple[int, ...]
     rows: Array
@@ -34,7 +37,7 @@ class _Group:
 
 @dataclass(frozen=True, eq=False)
 class _Given:
-    """Coordinates of a block: `free` ones are idle, the `bound` ones follow from these and from `others`' (one after the other)."""
+    """Coordinates of a block: `free` ones are idle; the `bound` ones follow from these and from the coordinates of `others`, in order."""
 
     free: Array
     bound: Array
@@ -45,10 +48,11 @@ class _Given:
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """Motions that fulfil the constraints.
+    """Motions that satisfy the constraints.
 
-    `last` is the elimination of platform and strokes, `idle` (k rows, N) one motion for every coordinate that nothing holds;
-    `redundant` the numbers of the constraints of each state of self-stress.
+    `last` is the elimination of platform and strokes, `idle` (k rows, N) one free internal mode per unconstrained coordinate.
+
+    `redundant` has the numbers of the constraints of each self-stress state.
     """
 
     last: Elimination
@@ -57,7 +61,7 @@ class Solved:
 
 
 def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> Solved:
-    """Eliminate constraints, each (1, N), over the twists of `bodies` (the platform's first) and the strokes; `scale` (N,) compares them.
+    """Eliminate constraints (1, N) over the twists of `bodies` (the platform's first) and the strokes, comparable by `scale` (N,).
 
     >>> rows = [Sparse(np.array([0, 6]), np.array([[1.0, -1.0]]), 12), Sparse(np.array([6]), np.array([[1.0]]), 12)]
     >>> found = eliminate_blocks([*rows, rows[1]], np.ones(12), bodies=2, strokes=0)
@@ -94,7 +98,7 @@ def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes:
 
 
 def _take(groups: dict[int, _Group], near: dict[int, set[int]], block: int) -> list[_Group]:
-    """The groups of rows of a block, which are no longer there."""
+    """Remove and return the groups of rows of a block."""
     numbers = sorted(near.pop(block))
     own = [groups.pop(number) for number in numbers]
     for other in {each for group in own for each in group.blocks} - {block}:
@@ -103,7 +107,7 @@ def _take(groups: dict[int, _Group], near: dict[int, set[int]], block: int) -> l
 
 
 def _group(row: Sparse, number: int, scale: Array, starts: Array) -> _Group:
-    """A constraint by its blocks, of unit size."""
+    """A constraint by its blocks, scaled to unit size."""
     found = np.unique(np.searchsorted(starts, row.columns, side="right") - 1)
     widths, places = _places(found, starts)
     values = np.zeros((1, int(widths.sum())))
@@ -116,7 +120,7 @@ def _group(row: Sparse, number: int, scale: Array, starts: Array) -> _Group:
 
 
 def _places(blocks: Array, starts: Array) -> tuple[Array, Array]:
-    """Widths of blocks, and where each begins when they stand side by side."""
+    """Widths of blocks, and their offsets in concatenation."""
     widths = starts[blocks + 1] - starts[blocks]
     return widths, (np.cumsum(widths) - widths).astype(int)
 
@@ -126,7 +130,7 @@ def _degree(groups: dict[int, _Group], numbers: set[int]) -> int:
 
 
 def _join(groups: Sequence[_Group], first: int | None, starts: Array) -> _Group:
-    """Groups one below the other, over all their blocks, one of them first."""
+    """Stack groups over the union of their blocks, with one of them first."""
     rest = sorted({block for group in groups for block in group.blocks} - {first})
     blocks = np.array([*([] if first is None else [first]), *rest], dtype=int)
     made = np.unique(np.concatenate([group.made for group in groups])) if groups else np.zeros(0, dtype=int)
@@ -148,7 +152,7 @@ def _join(groups: Sequence[_Group], first: int | None, starts: Array) -> _Group:
 
 
 def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Array, Array]]) -> tuple[_Given, _Group | None]:
-    """A body's coordinates from its rows, and the rows in which it does not occur; those that vanish are states of self-stress."""
+    """Body coordinates from its rows, and the rows that do not contain it; zero rows are self-stress states."""
     width = int(starts[block + 1] - starts[block])
     others = group.blocks[1:]
     if not len(group.rows):
@@ -184,7 +188,7 @@ def _solved(
 
 
 def _idle_motions(given: dict[int, _Given], starts: Array, scale: Array) -> list[Sparse]:
-    """A motion for every free coordinate: those that follow from it, and from these, move with it."""
+    """A motion for every free coordinate, with all coordinates that follow from it."""
     names = list(given)
     place = {block: number for number, block in enumerate(names)}
     follow: dict[int, list[int]] = {}
@@ -216,7 +220,7 @@ def _idle_motions(given: dict[int, _Given], starts: Array, scale: Array) -> list
 
 
 def _following(found: _Given, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
-    """How a block moves with those that have moved, its own free coordinates at rest."""
+    """Motion of a block by the blocks that have moved, its own free coordinates at zero."""
     result = np.zeros((int(starts[block + 1] - starts[block]), count))
     column = 0
     for other in found.others:
@@ -228,7 +232,7 @@ def _following(found: _Given, moved: dict[int, Array], starts: Array, block: int
 
 
 def _named(stresses: list[tuple[Array, Array]]) -> tuple[tuple[int, ...], ...]:
-    """The constraints of each state of self-stress; states that have some in common are parted as far as they can be."""
+    """The constraints of each self-stress state; states with common constraints are separated if possible."""
     if not stresses:
         return ()
     parts: list[tuple[int, ...]] = []
@@ -242,7 +246,7 @@ def _named(stresses: list[tuple[Array, Array]]) -> tuple[tuple[int, ...], ...]:
 
 
 def _connected(sets: list[Array]) -> list[list[int]]:
-    """Numbers of sets by those that have members in common, directly or by way of others."""
+    """Number sets by connected components of common members."""
     owners = np.repeat(np.arange(len(sets)), [len(each) for each in sets])
     members = len(sets) + np.concatenate(sets)
     size = int(np.max(members, initial=len(sets) - 1)) + 1
