@@ -1,4 +1,4 @@
-"""The system of one flexure and its condensation: from amplitudes, end force and moment to the motion of its end (docs/nonlinear.md, 6)."""
+"""Condensation of one flexure: from amplitudes, end force and end moment to the motion of its end (docs/nonlinear.md, 6)."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from flexstage.models.nonlinear.elements.element import Tangent, field_system
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What the unknowns (..., q + 6) of a flexure do: `still` while its end stays, and `moved` (..., q + 6, 6) per motion of its end.
+    """Response of the unknowns (..., q + 6) of a flexure: `still` at a fixed end, and `moved` (..., q + 6, 6) per motion of its end.
 
-    Of a flexure with weight three more columns: per change of the weight in its start frame.
+    A flexure with weight has three more columns: per change of the weight in its start frame.
     """
 
     still: Array
@@ -23,7 +23,7 @@ class Answer:
 
 
 def system(found: Tangent) -> Array:
-    """The matrix (..., q + 6, q + 6) of amplitudes, end force and end moment; symmetric where H is."""
+    """Build the matrix (..., q + 6, q + 6) of amplitudes, end force and end moment; symmetric if H is."""
     size = found.hessian.shape[-1]
     result = np.zeros((*found.hessian.shape[:-2], size + 6, size + 6))
     result[..., :size, :size] = found.hessian
@@ -35,7 +35,7 @@ def system(found: Tangent) -> Array:
 
 
 def condense(found: Tangent, gap: Array) -> Answer:
-    """Solve for the motions of the end and for the residual; `gap` (..., 6) is how far the end lies off its body. NaN where singular."""
+    """Solve for the motions of the end and for the residual; `gap` (..., 6) is the distance of the end from its body. NaN if singular."""
     matrix = system(found)
     size = found.hessian.shape[-1]
     right = np.zeros((*matrix.shape[:-1], 7 if found.hung is None else 10))
@@ -49,9 +49,9 @@ def condense(found: Tangent, gap: Array) -> Answer:
 
 
 def settle(law: FlexureLaw, strain: Array) -> Array:
-    """Amplitudes (..., b, q) whose plate fields have the least energy at their curvatures, in which it is quadratic.
+    """Compute amplitudes (..., b, q) with plate fields of least energy, which is quadratic in them, at the curvatures.
 
-    Newton's method on fields and curvatures at once overshoots in thin leaves, where stretching goes with their squares' product.
+    A joint Newton iteration on fields and curvatures overshoots in thin leaves, where stretching depends on their squared product.
     """
     count = law.modes.shape[-1]
     if strain.shape[-1] == count:
@@ -61,7 +61,7 @@ def settle(law: FlexureLaw, strain: Array) -> Array:
 
 
 def solve(matrix: Array, right: Array) -> Array:
-    """Solutions (..., n, m) of a batch of systems, NaN where one is singular or not finite."""
+    """Solve a batch of systems (..., n, m), NaN for singular or non-finite ones."""
     try:
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:

@@ -1,7 +1,7 @@
 """One flexure at large displacements: the mixed functional's residual and its derivatives (docs/nonlinear.md, 1 to 8).
 
-Everything is in the flexure's start frame, lengths over its length, forces over E I / L^2. Tables of a law lead with axes of flexures,
-states have one more, of loads: amplitudes (..., b, q), force and moment (..., b, 3).
+Everything is in the flexure's start frame, lengths over its length, forces over E I / L^2. Tables of a law lead with axes of flexures;
+states have one more axis, of loads: amplitudes (..., b, q), force and moment (..., b, 3).
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ from flexstage.spatial.rotation import cross, exponential, magnus
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """How a flexure lies: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its points, its rotation there and at its end.
+    """Configuration of a flexure: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its points, rotation there and at its end.
 
     `rate` (..., b, n, 3) is r', `place` (..., b, n, 3) is r, `end` (..., b, 3) is r at its end; `soft` (..., b, n, 3, 3) is R C_n R^T,
-    `tension` (..., b, n) is N; `force` at the end and `weight` are those it lies under.
+    `tension` (..., b, n) is N.
+
+    `force` at the end and `weight` are its loads.
     """
 
     rule: Rule
@@ -43,8 +45,10 @@ class Shape:
 class Tangent:
     """Residual `gradient` (..., b, q) of the amplitudes and the blocks of the derivative (docs/nonlinear.md, 6).
 
-    `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n. Of a
-    flexure with weight, `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are what its mean place does by amplitudes, force and weight.
+    `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n.
+
+    For a flexure with weight, `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are the derivatives of its mean position by amplitudes,
+    force and weight.
     """
 
     gradient: Array
@@ -57,7 +61,7 @@ class Tangent:
 
 
 def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = None) -> Shape:
-    """The flexure at given amplitudes and end force; `weight` (..., b, 3) is its own load per length, over E I / L^3."""
+    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is the weight per length, over E I / L^3."""
     rule = gauss(law.modes.shape[-3])
     count = law.modes.shape[-1]
     curvature = _apply(law.modes, strain[..., :count])
@@ -75,7 +79,7 @@ def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = N
 
 
 def tangent(law: FlexureLaw, strain: Array, moment: Array, found: Shape) -> Tangent:
-    """Residual and derivatives at a shape (docs/nonlinear.md, 4 to 8)."""
+    """Compute residual and derivatives at a configuration (docs/nonlinear.md, 4 to 8)."""
     rule, modes = found.rule, law.modes[..., None, :, :, :]
     weights = rule.weights[:, None, None]
     size, count = modes.shape[-3], modes.shape[-1]
@@ -114,9 +118,10 @@ def tangent(law: FlexureLaw, strain: Array, moment: Array, found: Shape) -> Tang
 
 
 def mode_paths(law: FlexureLaw, found: Shape) -> tuple[Array, Array, Array]:
-    """How points move (..., b, n, 3, k) and turn by unit amplitudes of curvature, the start at rest and the end force as it is.
+    """Compute displacement (..., b, n, 3, k) and rotation of points by unit curvature amplitudes, for a fixed start and end force.
 
-    And (..., b, 2, n, 3, 3) the integrals of R C_n R^T to each point: how it moves by force, and by weight (docs/nonlinear.md, 25).
+    Also returns the integrals (..., b, 2, n, 3, 3) of R C_n R^T to each point: displacement per force and per weight (docs/nonlinear.md,
+    25).
     """
     rule, modes = found.rule, law.modes[..., None, :, :, :]
     forces = _forces(rule, found.force, found.weight)
@@ -136,7 +141,7 @@ def _running(rule: Rule, values: Array) -> Array:
 
 
 def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
-    """The matrix (..., b, e, e) and right side (..., b, e) of the plate's fields that go with curvatures (docs/nonlinear.md, 13)."""
+    """Build the matrix (..., b, e, e) and right side (..., b, e) of the plate fields at given curvatures (docs/nonlinear.md, 13)."""
     weights, count = gauss(law.modes.shape[-3]).weights[:, None], law.modes.shape[-1]
     curvature = _apply(law.modes, strain[..., :count])
     twist, bend = curvature[..., :1], curvature[..., 2:]
@@ -148,7 +153,7 @@ def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
 
 
 def energy(law: FlexureLaw, strain: Array, found: Shape) -> Array:
-    """Strain energy (..., b) over E I / L, that of stretch and shear by the end force included, counted from straight."""
+    """Compute the strain energy (..., b) over E I / L from the straight state, including stretch and shear by the end force."""
     quadratic = np.sum(strain * (0.5 * strain @ law.form - law.rest[..., None, :]), axis=-1)
     gauss_two, gauss_four = _gaussian(found)
     stretch = law.stretch[..., None, None, :]
@@ -175,7 +180,7 @@ def _turns(rule: Rule, inner: Array) -> tuple[Array, Array]:
 
 
 def _forces(rule: Rule, force: Array, weight: Array | None) -> Array:
-    """The force (..., b, n, 3) that the flexure beyond each point exerts: the end's, and its weight (docs/nonlinear.md, 16)."""
+    """The force (..., b, n, 3) of the flexure beyond each point: end force and weight (docs/nonlinear.md, 16)."""
     if weight is None:
         return np.broadcast_to(force[..., None, :], (*force.shape[:-1], rule.size, 3))
     return force[..., None, :] + (1.0 - rule.points)[:, None] * weight[..., None, :]
@@ -231,7 +236,7 @@ def _elastic(law: FlexureLaw, strain: Array, found: Shape) -> tuple[Array, Array
 
 
 def _stretching(law: FlexureLaw, found: Shape) -> tuple[Array, Array, Array]:
-    """What stretches: rows (..., 1, n, 4, q) of k_x, k_z, a2 and a4, and its energy's derivatives by them (..., b, n, 4), (..., 4, 4)."""
+    """Stretching rows (..., 1, n, 4, q) of k_x, k_z, a2 and a4, and derivatives (..., b, n, 4), (..., 4, 4) of its energy by them."""
     count, fields = law.modes.shape[-1], law.plate.shape[-1]
     rows = np.zeros((*law.modes.shape[:-2], 4, count + fields))
     rows[..., 0, :count], rows[..., 1, :count] = law.modes[..., 0, :], law.modes[..., 2, :]

@@ -25,7 +25,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 @dataclass(frozen=True, eq=False)
 class Event:
-    """What happens between two points of a path: a `LIMIT`, where the load turns, or a `BIFURCATION`, where stability is lost or won."""
+    """Event between two points of a path: a `LIMIT` point of the load, or a `BIFURCATION`, where stability changes."""
 
     kind: Kind
     before: int
@@ -34,11 +34,12 @@ class Event:
 
 @dataclass(frozen=True, eq=False)
 class LoadPath:
-    """Load path, equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], the `state` of each.
+    """Load path, equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], and a `state` for each.
 
-    `motions` (k,) is how many ways each would leave its equilibrium (0: stable; -1: not found), what a held drive holds counted as held.
-    `locked` coordinates stay where they are along it. `turns` (k - 1,) are the extreme loads between its points, NaN where the load is
-    monotonic; None where values were given.
+    `motions` (k,) is the number of unstable motions (0: stable; -1: no equilibrium) with a fixed drive coordinate. `locked` coordinates
+    stay fixed along the path.
+
+    `turns` (k - 1,) are the extreme loads between its points, NaN if the load is monotonic; `None` if values were given.
     """
 
     drive: str
@@ -49,16 +50,16 @@ class LoadPath:
     turns: Array | None = None
 
     def some(self, points: Array) -> LoadPath:
-        """Some of its points, by their numbers."""
+        """Select points by their numbers."""
         return LoadPath(self.drive, self.values[points], self.state.some(points), self.motions[points], self.locked)
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Limit points and bifurcations, in order, a bifurcation at the mean of the values on either side."""
+        """Limit points and bifurcations, in order; a bifurcation at the mean of its two adjacent values."""
         return tuple(itertools.chain.from_iterable(map(self._between, range(len(self.values) - 1))))
 
     def _between(self, place: int) -> Iterator[Event]:
-        """What happens between a point and the next: at a limit point one motion is gained or lost, more at a bifurcation."""
+        """Event between a point and the next: one motion changes at a limit point, more at a bifurcation."""
         top, motions = np.nan if self.turns is None else float(self.turns[place]), self.motions[place : place + 2]
         changes = 0 if min(motions) < 0 else abs(int(motions[1] - motions[0]))
         if np.isfinite(top):
@@ -78,11 +79,13 @@ def load_path(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Load path: equilibria as `drive` takes `values` (k,): a held coordinate (`platform.y`), or an actuator's stroke, force or a wrench.
+    """Compute the load path as `drive` takes `values` (k,): a fixed coordinate (`platform.y`), or an actuator's stroke, force or a wrench.
 
-    Coordinates in `hold` stay locked at their values. All values are tried at once from the drawn position; what fails starts again from
-    its nearest neighbour that was found. Stable states that do not continue the stage at rest along the drive have no numbers, as in
-    `equilibrium`. Raises `DesignError` for a drive that the stage does not have.
+    Coordinates in `hold` stay locked at their values. All values start from the nominal position; failed ones start again from the nearest
+    converged one.
+
+    Stable states that do not continue the equilibrium along the drive are NaN, as in `equilibrium`. Raises `DesignError` for an unknown
+    drive.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -99,7 +102,7 @@ def load_path(
 
 
 def begin_along(rest: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
-    """The stage at rest with its drive held there, and the value of the drive."""
+    """Compute the equilibrium with the drive coordinate fixed, and the value of the drive."""
     driven = drive in {channel.name for channel in rest.model.inputs}
     if not bool(rest.converged):
         return rest, 0.0
@@ -110,7 +113,7 @@ def begin_along(rest: State, drive: str, loads: Mapping[str, float], hold: Mappi
 
 
 def continue_along(begin: State, found: State, away: Array) -> State:
-    """States (k,) of a drive that is `away` (k,) from where it begins; stable ones that do not continue one another have no numbers."""
+    """Compute states (k,) of a drive at distances `away` (k,) from its start; stable ones that do not continue one another are NaN."""
     if not bool(begin.converged):
         return replace(found, status=np.where(found.converged, begin.status, found.status), reached=0.0 * found.reached)
     pose, status, reached = found.pose, np.array(found.status), np.array(found.reached)
@@ -141,7 +144,7 @@ def equilibria_along(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> State:
-    """The states (k,) of a `load_path`, of which nothing is asked but where they are.
+    """Compute the states (k,) of a `load_path` without stability and events.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -174,7 +177,7 @@ def equilibria_of_designs(
     hold: Sequence[Mapping[str, float]],
     weight: float = 1.0,
 ) -> list[State]:
-    """The states of `equilibria_along` of several designs of one structure, in one run; values (k,) and locked coordinates of each.
+    """Compute the states of `equilibria_along` for several designs of one structure; values (k,) and locked coordinates of each.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -194,7 +197,7 @@ def equilibria_of_designs(
 
 
 def _neighbour(found: State) -> State:
-    """The state with every case that failed begun from the nearest that did not."""
+    """Restart every failed case from the nearest converged one."""
     places, good = np.arange(len(found.status)), np.flatnonzero(found.converged)
     nearest = good[np.argmin(np.abs(places[:, None] - good), axis=1)]
     chosen = np.where(found.converged, places, nearest)
@@ -213,11 +216,12 @@ def continuation(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Arc-length continuation: equilibria along the factor on `load`, past limit points.
+    """Compute equilibria along the factor on `load` by arc-length continuation, past limit points.
 
-    `step` is the longest step in the motion of the bodies, over the flexures' length and in radians; where the path turns steps are
-    shorter. The path is `points` times as long, and ends before where no further equilibrium is found. Coordinates in `hold` stay
-    locked at their values. After E. Riks (Int. J. Solids Structures 15, 1979), steps normal to the first of each.
+    `step` is the maximum step in body motion, over the flexure length and in radians; steps are shorter on a curved path. The path is
+    `points` times as long, and ends earlier without a further equilibrium. Coordinates in `hold` stay locked at their values.
+
+    After E. Riks (Int. J. Solids Structures 15, 1979), with corrections normal to the first step.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -230,7 +234,7 @@ def continuation(
     names = [channel.name for channel in model.inputs]
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
-        raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
+        raise refuse(", ".join(unknown) or "load", "not a load of this stage, or zero", "Name a force, moment or stroke and its size")
     course = course_of(start, load, 0.0, options)
     begin = first_point(course, start.pose, 0.0)
     return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
@@ -248,12 +252,13 @@ def post_buckling_path(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Post-buckling path: equilibria on the branch that leaves the path of `load` where it first buckles, along the factor on the load.
+    """Compute the post-buckling path: equilibria on the branch at the first bifurcation of `load`, along the factor on the load.
 
-    The first state is the last stable one before the bifurcation; the next goes along the motion that opens there, or, with `side` -1,
-    against it (the sign of `Critical.shape`). Steps and points are as in `continuation`. Raises `DesignError` as `critical_load`
-    does; where the load turns instead (a limit, which `continuation` passes); where a flexure buckles individually, its ends at rest; and
-    where no equilibrium is found on the branch.
+    The first state is the last stable one before the bifurcation. The next is in the direction of the buckling mode or, with `side` -1,
+    opposite to it (the sign of `Critical.shape`). Steps and points are as in `continuation`.
+
+    Raises `DesignError` as `critical_load` does; at a limit point, which `continuation` passes; for a flexure that buckles between fixed
+    ends; and without an equilibrium on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -264,7 +269,7 @@ def post_buckling_path(
     given = critical_load(model, load, rest=rest, weight=weight)
     if given.kind is Kind.LIMIT:
         raise refuse(
-            "load", f"at {given.factor:.6g} times the load equilibrium ends: nothing branches", "Follow the load with fs.continuation"
+            "load", f"limit point without a branch at {given.factor:.6g} times the load", "Follow the load with fs.continuation"
         )
     return beyond(given, load, side=side, step=step, points=points, options=options)
 
@@ -278,11 +283,12 @@ def beyond(
     points: int = 60,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Equilibria from where a load is critical, along the factor on it: on the branch that opens there, or past the limit or bend.
+    """Compute equilibria beyond a critical point, along the load factor: on the branch of a bifurcation, past a limit or bend.
 
-    `given` is what `critical_load` found for the load; steps, points and `side` are as in `post_buckling_path`; past a limit, or where the
-    path bends, there is one side only. Raises `DesignError` for the other one, where a flexure buckles individually, its ends at rest, and
-    where no equilibrium is found.
+    `given` is the result of `critical_load` for the load; steps, points and `side` are as in `post_buckling_path`. Past a limit point or a
+    bend only one side exists.
+
+    Raises `DesignError` for the other side, for a flexure that buckles between fixed ends, and without an equilibrium.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -293,9 +299,9 @@ def beyond(
     """
     start, what = given.state, f"at {given.factor:.6g} times the load"
     if given.kind is not Kind.BIFURCATION and side < 0.0:
-        raise refuse("side", f"{what} the path goes on to one side: a {given.kind.value}", "Follow that one")
+        raise refuse("side", f"{what} the path continues to one side only: a {given.kind.value}", "Use the other side")
     if given.link and given.kind is Kind.BIFURCATION:
-        raise refuse(given.link, f"{what} it gives way between its ends, which rest", "Draw it as two parts with a light body between them")
+        raise refuse(given.link, f"{what} the flexure buckles between fixed ends", "Model it as two parts with a light body between them")
     course, into = course_of(start, load, given.factor, options), None
     if given.kind is Kind.BIFURCATION:
         others = np.zeros(len(course.scale) - start.model.freedoms)
@@ -303,7 +309,7 @@ def beyond(
     begin = critical_point(course, start.pose, given.factor, into)
     found = [begin, *follow_course(course, begin, step, points)]
     if len(found) == 1:
-        raise refuse("load", f"no equilibrium is found beyond what gives way {what}", "Try a smaller step")
+        raise refuse("load", f"no equilibrium beyond the critical point {what}", "Use a smaller step")
     return _along(course, found, start.held)
 
 
@@ -319,7 +325,7 @@ def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> LoadPat
 
 
 def _turn(one: Point, other: Point) -> float:
-    """The extreme factor between two points, of the cubic with their values and slopes; NaN where it goes one way."""
+    """The extreme factor between two points, of the cubic with their values and slopes; NaN if monotonic."""
     if one.slope * other.slope >= 0.0:
         return np.nan
     cubic = scipy.interpolate.CubicHermiteSpline([0.0, np.linalg.norm(other.step)], [one.factor, other.factor], [one.slope, other.slope])
