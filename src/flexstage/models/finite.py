@@ -163,9 +163,9 @@ def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: Finit
     >>> (1e6 * inverse_kinematics(stage, ideal(stage), lifted).strokes[3:]).round(1).tolist()
     [50.0, 50.0, 50.0]
     """
-    wanted = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]
-    strokes = np.zeros((*wanted.shape[:-1], len(kinematics.actuators)))
-    return _solve(mechanism, kinematics, strokes, wanted)
+    target = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]
+    strokes = np.zeros((*target.shape[:-1], len(kinematics.actuators)))
+    return _solve(mechanism, kinematics, strokes, target)
 
 
 def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...]:
@@ -179,10 +179,10 @@ def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...
     return _links(mechanism, kinematics, posed=False).shape
 
 
-def _solve(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted: Array | None) -> FiniteMotion:
+def _solve(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, target: Array | None) -> FiniteMotion:
     _ = kinematics.mapping  # raises for under-actuated stages
-    links = _links(mechanism, kinematics, posed=wanted is not None)
-    state, iterations = _newton(links, _state_at(links, strokes, wanted))
+    links = _links(mechanism, kinematics, posed=target is not None)
+    state, iterations = _newton(links, _state_at(links, strokes, target))
     names = (*links.bodies, GROUND)
     poses = {name: FinitePose(state.shift[..., index, :], logarithm(state.turn[..., index, :, :])) for index, name in enumerate(names)}
     return FiniteMotion(
@@ -225,18 +225,18 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
     assembly = expand(mechanism).welded
     bodies = layout(assembly).bodies
     index = {name: number for number, name in enumerate((*bodies, GROUND))}
-    placed = tuple(assembly.links.values())
-    parts = [inner(link.part) for link in placed]
+    placed_links = tuple(assembly.links.values())
+    parts = [inner(link.part) for link in placed_links]
     beams = [number for number, part in enumerate(parts) if isinstance(part, Shaped) and part.slender]
     slender = [part for part in parts if isinstance(part, Shaped) and part.slender]
     return _Links(
         bodies=bodies,
-        first=[index[link.joins[0]] for link in placed],
-        second=[index[link.joins[1]] for link in placed],
-        first_arm=_together([_arm(assembly, link, link.joins[0]) for link in placed], 1),
-        second_arm=_together([_arm(assembly, link, link.joins[1]) for link in placed], 1),
-        axes=_together([link.frame.rotation for link in placed], 2),
-        locked=_locked_rows(placed, kinematics),
+        first=[index[link.joins[0]] for link in placed_links],
+        second=[index[link.joins[1]] for link in placed_links],
+        first_arm=_together([_arm(assembly, link, link.joins[0]) for link in placed_links], 1),
+        second_arm=_together([_arm(assembly, link, link.joins[1]) for link in placed_links], 1),
+        axes=_together([link.frame.rotation for link in placed_links], 2),
+        locked=_locked_rows(placed_links, kinematics),
         drives=free_deformations(assembly),
         beams=beams,
         spans=_together([np.asarray(part.span) for part in slender], 0),
@@ -246,9 +246,12 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
     )
 
 
-def _locked_rows(placed: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]:
+def _locked_rows(placed_links: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]:
     return [
-        6 * number + freedom.index for number, link in enumerate(placed) for freedom in ALL if freedom not in kinematics.free[link.name]
+        6 * number + freedom.index
+        for number, link in enumerate(placed_links)
+        for freedom in ALL
+        if freedom not in kinematics.free[link.name]
     ]
 
 
@@ -264,15 +267,15 @@ def _together(arrays: list[Array], depth: int) -> Array:
     return np.stack([np.broadcast_to(array, batch + array.shape[array.ndim - depth :]) for array in arrays], axis=-1 - depth)
 
 
-def _state_at(links: _Links, strokes: Array, wanted: Array | None) -> _State:
+def _state_at(links: _Links, strokes: Array, target: Array | None) -> _State:
     lead = np.broadcast_shapes(strokes.shape[:-1], links.shape)
-    kind = np.result_type(strokes, float if wanted is None else wanted, links.first_arm, links.axes)
+    kind = np.result_type(strokes, float if target is None else target, links.first_arm, links.axes)
     count = len(links.bodies) + 1
     return _State(
         shift=np.zeros((*lead, count, 3), dtype=kind),
         turn=np.broadcast_to(np.eye(3, dtype=kind), (*lead, count, 3, 3)),
         strokes=np.broadcast_to(strokes.astype(kind), (*lead, strokes.shape[-1])),
-        wanted=np.zeros((*lead, 0)) if wanted is None else np.broadcast_to(wanted, (*lead, wanted.shape[-1])),
+        wanted=np.zeros((*lead, 0)) if target is None else np.broadcast_to(target, (*lead, target.shape[-1])),
     )
 
 

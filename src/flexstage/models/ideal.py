@@ -101,14 +101,14 @@ def _ideal(mechanism: Mechanism) -> Kinematics:
     solution = eliminate_each(graph.constraints, graph.scale, keep=tuple(range(6)))
     freedoms = [index for index in solution.independent if index < 6]
     columns = [solution.independent.index(index) for index in freedoms]
-    rest = [index for index in range(len(solution.independent)) if index not in columns]
+    idle_columns = [index for index in range(len(solution.independent)) if index not in columns]
     size = graph.order.size
-    idle = np.real(solution.basis[..., rest])
+    idle = np.real(solution.basis[..., idle_columns])
     _require_paths(graph, idle[..., size:, :])
-    motion = _without_idle(graph, solution, columns, rest)
+    motion = _without_idle(graph, solution, columns, idle_columns)
     bodies, strokes = motion[..., :size, :], motion[..., size:, :]
-    sensed = _sense(graph, solution, columns, rest, bodies)
-    found = Kinematics(
+    sensed = _sense(graph, solution, columns, idle_columns, bodies)
+    result = Kinematics(
         actuators=tuple(graph.assembly.strokes),
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
@@ -129,7 +129,7 @@ def _ideal(mechanism: Mechanism) -> Kinematics:
         thrust_inputs=tuple(graph.assembly.actuator(name).input.si for name in graph.assembly.thrusts),
         thrust=_thrust(graph, sensed),
     )
-    return replace(found, blocked=_blockages(graph, found.immobile)) if found.immobile else found
+    return replace(result, blocked=_blockages(graph, result.immobile)) if result.immobile else result
 
 
 def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
@@ -146,21 +146,21 @@ def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
     solved = eliminate_blocks(rows, scale, len(order.bodies), len(assembly.strokes))
     free = [index for index in solved.last.independent if index < 6]
     columns = [solved.last.independent.index(index) for index in free]
-    rest = [index for index in range(len(solved.last.independent)) if index not in columns]
+    idle_columns = [index for index in range(len(solved.last.independent)) if index not in columns]
     graph = _Graph(assembly, order, cast("Array", Rows.of(operators, order.size)), np.zeros((0, 0)), names, scale, length, {})
-    _require_paths(graph, solved.last.basis[6:, rest])
+    _require_paths(graph, solved.last.basis[6:, idle_columns])
     size = order.size
     idle = as_csr([Sparse(each.columns, each.values, len(scale)) for each in solved.idle], len(scale)).T.tocsr()[:size]
     strained = cast("Rows", graph.strain).entries @ idle if idle.shape[1] else None
     watching = [*(_reading(graph, name) for name in assembly.gauges), *_elongations(graph).values()]
-    if rest or (strained is not None and any(_sees_few(row, idle) for row in watching)):
+    if idle_columns or (strained is not None and any(_sees_few(row, idle) for row in watching)):
         return None
     strokes = solved.last.basis[6:, columns]
     bodies = _least_deformed(graph, solved.last.basis[:6, columns], strokes)
     if bodies is None:
         return None
     strains = graph.strain @ bodies
-    found = Kinematics(
+    result = Kinematics(
         actuators=tuple(assembly.strokes),
         coordinates=tuple(COMPONENTS[index] for index in free),
         gauges=tuple(assembly.gauges),
@@ -181,7 +181,7 @@ def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
         thrust_inputs=tuple(assembly.actuator(name).input.si for name in assembly.thrusts),
         thrust=_thrust(graph, bodies),
     )
-    return None if found.immobile else found
+    return None if result.immobile else result
 
 
 def _large_constraints(assembly: Assembly, operators: Sequence[Sparse], size: int) -> tuple[list[Sparse], tuple[str, ...]]:
@@ -205,8 +205,8 @@ def _large_constraints(assembly: Assembly, operators: Sequence[Sparse], size: in
 def _sees_few(row: Array, idle: Any) -> bool:
     """`_sees` for sparse free internal modes."""
     own = few(row)
-    seen, most = own.values @ idle[own.columns].toarray(), np.abs(own.values) @ np.abs(idle[own.columns].toarray())
-    return bool(np.any(np.abs(seen) > _NEGLIGIBLE * most))
+    signal, most = own.values @ idle[own.columns].toarray(), np.abs(own.values) @ np.abs(idle[own.columns].toarray())
+    return bool(np.any(np.abs(signal) > _NEGLIGIBLE * most))
 
 
 def _least_deformed(graph: _Graph, motion: Array, strokes: Array) -> Array | None:
@@ -226,13 +226,13 @@ def _named_idle(graph: _Graph, idle: Any, strained: Any) -> tuple[Idle, ...]:
     if strained is None:
         return ()
     links = tuple(graph.assembly.links)
-    found: list[Idle] = []
+    result: list[Idle] = []
     moving, deforming = idle.tocsc(), strained.tocsc()
     for place in range(idle.shape[1]):
         size = np.max(np.abs(moving.data[moving.indptr[place] : moving.indptr[place + 1]]), initial=0.0)
         named = [_owners(matrix, place, _NEGLIGIBLE * size, names) for matrix, names in ((moving, graph.order.bodies), (deforming, links))]
-        found.append(Idle(*named))
-    return tuple(found)
+        result.append(Idle(*named))
+    return tuple(result)
 
 
 def _owners(matrix: Any, column: int, threshold: float, names: tuple[str, ...]) -> tuple[str, ...]:
@@ -248,12 +248,12 @@ def _hinges(graph: _Graph) -> dict[str, PlacedSuperelement]:
 
 def _element_strains(graph: _Graph, bodies: Array) -> dict[str, Array]:
     """Twists (..., 6, f) of their second ports relative to the bodies of the first ones, the deformation of the elastic models."""
-    found: dict[str, Array] = {}
+    result: dict[str, Array] = {}
     for name, item in _hinges(graph).items():
         first, second = item.ports.values()
         ends = [twist_at(graph.assembly, graph.order, port.body, second.frame) for port in (first, second)]
-        found[name] = (ends[1] - ends[0]) @ bodies
-    return found
+        result[name] = (ends[1] - ends[0]) @ bodies
+    return result
 
 
 def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
@@ -264,14 +264,16 @@ def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
     names = tuple(f"{links[link]}.{freedom}" for link, _, freedom in ends)
     meant = {f"{links[name]}.{freedom.value}" for name, link in graph.assembly.links.items() for freedom in link.part.intended}
     actuators = list(graph.assembly.strokes)
-    found = {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
-    return {name: replace(each, ends=_rigid_ends(graph.assembly.links[graph.assembly.strokes[name]], each)) for name, each in found.items()}
+    result = {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
+    return {
+        name: replace(each, ends=_rigid_ends(graph.assembly.links[graph.assembly.strokes[name]], each)) for name, each in result.items()
+    }
 
 
-def _rigid_ends(link: PlacedLink, found: Blockage) -> tuple[str, ...]:
+def _rigid_ends(link: PlacedLink, blocked: Blockage) -> tuple[str, ...]:
     """Ends at ground or platform of an actuator whose locked freedoms work against its stroke."""
     own = f"{link.drawn.removeprefix('links.')}."
-    stiff = any(name.startswith(own) for name in found.against)
+    stiff = any(name.startswith(own) for name in blocked.against)
     return tuple(body for body in link.joins if body in (GROUND, PLATFORM)) if stiff else ()
 
 
@@ -350,48 +352,48 @@ def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
     )
 
 
-def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest: list[int]) -> Array:
+def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], idle_columns: list[int]) -> Array:
     """Motions per platform coordinate, free internal modes set for the least deformation of links (rotations times the length scale)."""
-    wanted, idle = solution.basis[..., columns], solution.basis[..., rest]
-    if not rest:
-        return wanted
+    driven, idle = solution.basis[..., columns], solution.basis[..., idle_columns]
+    if not idle_columns:
+        return driven
     size = graph.order.size
     weighted = np.tile(_weights(graph.length), len(graph.assembly.links))[..., None] * graph.strain
-    before, spun = (weighted @ motion[..., :size, :] for motion in (wanted, idle))
+    before, spun = (weighted @ motion[..., :size, :] for motion in (driven, idle))
     transposed = np.swapaxes(spun, -1, -2)
-    return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
+    return driven - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
 
 
-def _sense(graph: _Graph, solution: Elimination, columns: list[int], rest: list[int], bodies: Array) -> Array:
+def _sense(graph: _Graph, solution: Elimination, columns: list[int], idle_columns: list[int], bodies: Array) -> Array:
     """The body motions (..., N, f) for gauges and force actuators.
 
     Free internal modes that one of them sees store the least energy in the links they strain: so do forces on idle bodies reach the
     platform.
     """
     size = graph.order.size
-    wanted, idle = solution.basis[..., :size, columns], solution.basis[..., :size, rest]
+    driven, idle = solution.basis[..., :size, columns], solution.basis[..., :size, idle_columns]
     still = np.real(idle)
     rows = [*((name, _reading(graph, name)) for name in graph.assembly.gauges), *_elongations(graph).items()]
     watching = [(name, np.real(row)) for name, row in rows if _see_alike(name, np.real(row), still)]
     if not watching:
         return bodies
-    energy, mixed = np.zeros((len(rest), len(rest))), np.zeros((len(rest), len(columns)))
+    energy, mixed = np.zeros((len(idle_columns), len(idle_columns))), np.zeros((len(idle_columns), len(columns)))
     for place, stiffness in _stiffnesses(graph, still, [name for name, _ in watching]):
         strain = graph.strain[..., place, :]
         force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
-        energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ wanted)
+        energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ driven)
     held, loose = _split_alike(np.real(energy))
     unresisted = [name for name, row in watching if np.any(_sees(row, still @ loose))]
     require(_undetermined_findings(graph, unresisted, first_design(still @ loose, 2)))
-    return wanted - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
+    return driven - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
 
 
 def _see_alike(name: str, row: Array, motions: Array) -> bool:
     """`_sees`, required to be equal in all designs of a batch."""
-    seen = np.ravel(_sees(row, motions))
-    if np.any(seen != seen[0]):
-        raise unlike(int(np.argmax(seen != seen[0])), f"differs from the first in whether {name} sees a free internal mode")
-    return bool(seen[0])
+    flags = np.ravel(_sees(row, motions))
+    if np.any(flags != flags[0]):
+        raise unlike(int(np.argmax(flags != flags[0])), f"differs from the first in whether {name} sees a free internal mode")
+    return bool(flags[0])
 
 
 def _sees(row: Array, motions: Array) -> Array:

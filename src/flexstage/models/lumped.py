@@ -90,8 +90,8 @@ class _Stage:
     @property
     def locked(self) -> Mapping[str, Array]:
         """The rows (..., l, N) of the locked freedoms of every link."""
-        found = {name: [freedom.index for freedom in freedoms] for name, freedoms in self.freedoms.items()}
-        return {name: self.strains[name].operator[..., rows, :] for name, rows in found.items()}
+        indices = {name: [freedom.index for freedom in freedoms] for name, freedoms in self.freedoms.items()}
+        return {name: self.strains[name].operator[..., rows, :] for name, rows in indices.items()}
 
     @property
     def motions(self) -> Motions:
@@ -260,11 +260,11 @@ def _condensed(element: PlacedSuperelement) -> Condensed:
 
 def _strain_of(assembly: Assembly, order: Layout, element: PlacedSuperelement) -> Contribution:
     """Stiffness of a superelement over the port twists relative to the body of the first port, and over its modes."""
-    found = _condensed(element)
+    condensed = _condensed(element)
     first, *others = element.ports.values()
     relative = [twist_at(assembly, order, each.body, each.frame) - twist_at(assembly, order, first.body, each.frame) for each in others]
     loss = element.part.loss_factor
-    law = _block_diagonal(found.stiffness, np.diag(found.squares))
+    law = _block_diagonal(condensed.stiffness, np.diag(condensed.squares))
     return Contribution(_with_inner(order, element.name, tuple(relative)), law, 0.0 if loss is None else loss)
 
 
@@ -290,22 +290,24 @@ def _block_diagonal(first: Array, second: Array) -> Array:
 
 def _viscous(assembly: Assembly) -> dict[str, Array]:
     """Dampers of parts, by link."""
-    found = _by_part(lambda part, _: viscous_damping(part), assembly)
+    dampers = _by_part(lambda part, _: viscous_damping(part), assembly)
     elements = {name: _condensed(element).damping for name, element in assembly.superelements.items()}
-    return {name: damping for name, damping in (*found.items(), *elements.items()) if damping is not None}
+    return {name: damping for name, damping in (*dampers.items(), *elements.items()) if damping is not None}
 
 
 def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:
     """Links with non-finite stiffness or inertia in the first design, once per part, with the numbers of the part."""
-    told: set[str] = set()
+    listed: set[str] = set()
     for name, value in values.items():
         link = assembly.links[name]
-        if link.link.part not in told and not np.all(np.isfinite(np.real(first_design(value, 2)))):
-            told.add(link.link.part)
-            found = node_of(type(link.part)).numbers(link.part)
-            stated = ", ".join(f"{place} {float(np.ravel(np.real(number))[0]):.4g} {node.quantity.si}" for place, number, node in found)
+        if link.link.part not in listed and not np.all(np.isfinite(np.real(first_design(value, 2)))):
+            listed.add(link.link.part)
+            numbers = node_of(type(link.part)).numbers(link.part)
+            value_list = ", ".join(
+                f"{place} {float(np.ravel(np.real(number))[0]):.4g} {node.quantity.si}" for place, number, node in numbers
+            )
             advice = "Correct the extreme value"
-            yield Finding(name, f"non-finite {what} for the numbers of part {link.link.part}: {stated}", advice)
+            yield Finding(name, f"non-finite {what} for the numbers of part {link.link.part}: {value_list}", advice)
 
 
 def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> None:
@@ -319,10 +321,10 @@ def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> Non
     full = loose if basis is None else np.real(first_design(basis, 2)) @ loose
     weights = sign_weights(stage.order.coordinates)
     size = np.max(np.abs(full) * weights[:, None], axis=0)
-    seen = {
+    strains = {
         name: np.abs(np.real(first_design(item.operator, 2))[: len(over[name])] @ full) * over[name] for name, item in stage.strains.items()
     }
-    hidden = [name for name in stage.strains if np.any(seen[name][stiffness[name] > 0.0] > _STRETCHES * size)]
+    hidden = [name for name in stage.strains if np.any(strains[name][stiffness[name] > 0.0] > _STRETCHES * size)]
     if hidden:
         ends = {name: value[value > 0.0] for name, value in stiffness.items() if np.any(value > 0.0)}
         soft = min(hidden, key=lambda name: ends[name].min())
@@ -438,8 +440,8 @@ def _largest(inertia: Mapping[str, Contribution], motions: Array, coordinates: t
     least = _STILL * np.max(lengths * np.abs(motions), axis=-2, keepdims=True) / lengths
     total = np.zeros(motions.shape[-1])
     for item in inertia.values():
-        seen = np.abs(np.real(item.operator)) @ np.maximum(np.abs(motions), least)
-        total = total + np.sum(seen * (np.abs(np.real(item.law)) @ seen), axis=-2)
+        strains = np.abs(np.real(item.operator)) @ np.maximum(np.abs(motions), least)
+        total = total + np.sum(strains * (np.abs(np.real(item.law)) @ strains), axis=-2)
     return total
 
 
@@ -537,16 +539,16 @@ def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignErr
     size = strains[next(iter(strains))].operator.shape[-1]
     steep = assemble(pushing, size)
     share = _critical_share(assemble(strains, size) + steep, steep)
-    told = ", ".join(f"{name} has {_least_entry(np.diag(strains[name].law), share)}" for name in pushing)
-    what = f"the nominal position is unstable: {told}, the stable limit. The stage buckles in {_largest_coordinate(stage, motion)}"
+    stiffnesses = ", ".join(f"{name} has {_least_entry(np.diag(strains[name].law), share)}" for name in pushing)
+    what = f"the nominal position is unstable: {stiffnesses}, the stable limit. The stage buckles in {_largest_coordinate(stage, motion)}"
     return refuse(", ".join(pushing), what, "Make it less negative, or the stage stiffer in that motion")
 
 
-def _critical_share(rest: Array, steep: Array) -> float:
+def _critical_share(other: Array, steep: Array) -> float:
     """Largest stable factor on the negative stiffness `steep`, given the other stiffness `rest` (n, n)."""
-    root = np.sqrt(np.where(np.diag(rest) > 0.0, np.diag(rest), 1.0))
-    rest, steep = (each / root / root[:, None] for each in (rest, steep))
-    values, vectors = np.linalg.eigh(rest)
+    root = np.sqrt(np.where(np.diag(other) > 0.0, np.diag(other), 1.0))
+    other, steep = (each / root / root[:, None] for each in (other, steep))
+    values, vectors = np.linalg.eigh(other)
     loose, held = vectors[:, values < SINGULAR], vectors[:, values >= SINGULAR]
     if np.max(np.diag(loose.T @ steep @ loose), initial=0.0) > SINGULAR * np.max(np.diag(steep)):
         return 0.0
@@ -657,15 +659,15 @@ def _of_link(name: str) -> str:
 def _carrier_forces(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
     """Inertial forces (..., n, 6) on the coordinates under a rigid acceleration of the stage and the ground."""
     centre = stage.assembly.bodies[PLATFORM].reference
-    seen = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
+    carried = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
     for name, link in stage.assembly.links.items():
         carry = twist_transform(link.frame, centre)
         still = np.zeros((*carry.shape[:-2], stage.order.inner.get(name, 0), 6))
-        seen[_of_link(name)] = np.concatenate([carry, carry, still], axis=-2)
+        carried[_of_link(name)] = np.concatenate([carry, carry, still], axis=-2)
     for name, element in stage.assembly.superelements.items():
         carries = [twist_transform(port.frame, centre) for port in element.ports.values()]
-        seen[_of_link(name)] = np.concatenate(_broadcast((*carries, np.zeros((stage.order.inner[name], 6)))), axis=-2)
-    return strain_forces(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
+        carried[_of_link(name)] = np.concatenate(_broadcast((*carries, np.zeros((stage.order.inner[name], 6)))), axis=-2)
+    return strain_forces(inertia, carried) if inertia else np.zeros((stage.order.size, 6))
 
 
 def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idle, carried: Array) -> Array:

@@ -97,10 +97,10 @@ def mapped(mechanism: Mechanism) -> LinearModel:
 def _points(assembly: Assembly, kinematics: Kinematics) -> dict[str, tuple[Array, Array]]:
     """Ideal motions (..., 6, f) of the platform and of every named point, and their rigid motion (..., 6, 6) with the ground."""
     order, centre = layout(assembly), assembly.bodies[PLATFORM].reference
-    found = {PLATFORM: (kinematics.motion, np.eye(6))}
+    motions = {PLATFORM: (kinematics.motion, np.eye(6))}
     for name, (body, point) in assembly.points.items():
-        found[name] = twist_at(assembly, order, body, Frame(np.eye(3), point)) @ kinematics.bodies, transport(point - centre)
-    return found
+        motions[name] = twist_at(assembly, order, body, Frame(np.eye(3), point)) @ kinematics.bodies, transport(point - centre)
+    return motions
 
 
 def _model(
@@ -159,12 +159,12 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
     for name, drive in assembly.strokes.items():
         owner = drive.rpartition("/")[0]
         copy = owner if owner in unit_of else ""
-        stated = mechanism.units[unit_of[copy]].stiffness if copy else None
+        specified = mechanism.units[unit_of[copy]].stiffness if copy else None
         try:
-            result[name] = stated if stated is not None else computed_stiffness(assembly, drive)
+            result[name] = specified if specified is not None else computed_stiffness(assembly, drive)
         except DesignError as error:
-            if kinematics is not None and (borne := borne_compliance(assembly, kinematics, name)) is not None:
-                result[name] = 1.0 / borne
+            if kinematics is not None and (chain_compliance := borne_compliance(assembly, kinematics, name)) is not None:
+                result[name] = 1.0 / chain_compliance
                 continue
             key = f"Specify units.{unit_of[copy]}.stiffness" if copy else "Place the actuator in a unit with a specified stiffness"
             findings += [Finding(item.where, item.what, f"{key}, or use the lumped model") for item in error.findings]
@@ -201,10 +201,10 @@ def borne_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) 
 
 def _idle_wrenches(kinematics: Kinematics) -> Array:
     """Wrenches (..., 6, 6 - f) without work in any ideal motion."""
-    rest = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
+    complement = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
     count = 6 - kinematics.mobility
-    chosen = np.array([scipy.linalg.qr(each, pivoting=True)[2][:count] for each in np.real(rest).reshape(-1, 6, 6)], dtype=int)
-    return np.take_along_axis(rest, chosen.reshape(*rest.shape[:-2], 1, count), axis=-1)
+    chosen = np.array([scipy.linalg.qr(each, pivoting=True)[2][:count] for each in np.real(complement).reshape(-1, 6, 6)], dtype=int)
+    return np.take_along_axis(complement, chosen.reshape(*complement.shape[:-2], 1, count), axis=-1)
 
 
 def _work(assembly: Assembly, locked: Mapping[str, list[int]], forces: Array) -> Number | None:
@@ -212,13 +212,13 @@ def _work(assembly: Assembly, locked: Mapping[str, list[int]], forces: Array) ->
     total, start = np.zeros(()), 0
     largest = np.max(np.abs(np.real(forces)), axis=-1, keepdims=True)
     for name, axes in locked.items():
-        borne = forces[..., start : start + len(axes)]
+        wrench = forces[..., start : start + len(axes)]
         start += len(axes)
-        if np.any(np.abs(np.real(borne)) > _COLLINEAR * largest) and not isinstance(assembly.links[name].part, Joint):
+        if np.any(np.abs(np.real(wrench)) > _COLLINEAR * largest) and not isinstance(assembly.links[name].part, Joint):
             matrix = _known_compliance(assembly.links[name])
             if matrix is None:
                 return None
-            total = total + np.einsum("...i,...ij,...j", borne, matrix[..., axes, :][..., axes], borne)
+            total = total + np.einsum("...i,...ij,...j", wrench, matrix[..., axes, :][..., axes], wrench)
     return None if np.all(np.real(total) == 0.0) else total
 
 
@@ -254,15 +254,15 @@ def _equilibrium(rows: Array, loads: Array, rigid: Array, length: Number) -> Arr
 
 def _bearing(system: Array, rigid: Array) -> tuple[Array, Array] | None:
     """Equations and columns of the constraints and other loads in one design (N, m + k) that balance the load in the last column."""
-    count, wanted = len(rigid), system[:, -1]
+    count, target = len(rigid), system[:, -1]
     columns = _normal(system[:, :-1].T).T
     open_ = np.max(np.abs(null_space(columns)), axis=1, initial=0.0)[:count] > _COLLINEAR
     candidates = np.append(np.flatnonzero(rigid | ~open_), np.arange(count, columns.shape[1]))
     _, triangle, order = scipy.linalg.qr(columns[:, candidates], pivoting=True)
     diagonal = np.abs(np.diag(triangle))
     chosen = candidates[order[: int(np.sum(diagonal > _COLLINEAR * diagonal[0]))]]
-    missed = wanted - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], wanted, rcond=None)[0]
-    if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(wanted)):
+    missed = target - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], target, rcond=None)[0]
+    if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(target)):
         return None
     return scipy.linalg.qr(columns[:, chosen].T, pivoting=True)[2][: len(chosen)], chosen
 
@@ -306,9 +306,9 @@ def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
     driving = _chain(ways, assembly, drive, stop)
     if len(levers) != 1 or sorted(_ends(driving)) != sorted((GROUND, levers[0])):
         raise refuse(drive, f"its unit is neither a straight strut nor a single lever (branching bodies: {', '.join(levers)})", "")
-    rest = [link for link in ways[levers[0]] if link not in driving]
-    pivots = [link for link in rest if GROUND in link.joins]
-    poles = [link for link in rest if GROUND not in link.joins]
+    others = [link for link in ways[levers[0]] if link not in driving]
+    pivots = [link for link in others if GROUND in link.joins]
+    poles = [link for link in others if GROUND not in link.joins]
     if len(pivots) != 1 or len(poles) != 1:
         raise refuse(drive, f"its lever has {len(pivots)} pivots to ground and {len(poles)} output poles, expected one each", "")
     pole = _chain(ways, assembly, poles[0].name, stop)
@@ -339,14 +339,14 @@ def _chain(ways: Mapping[str, list[PlacedLink]], assembly: Assembly, start: str,
     """The links in series with one link, up to bodies of `stop` or dead ends."""
     chain = [assembly.links[start]]
     for body in assembly.links[start].joins:
-        here, last = body, chain[0] if body == assembly.links[start].joins[0] else assembly.links[start]
-        while here not in stop:
-            onward = [link for link in ways[here] if link.name != last.name]
+        body_reached, last = body, chain[0] if body == assembly.links[start].joins[0] else assembly.links[start]
+        while body_reached not in stop:
+            onward = [link for link in ways[body_reached] if link.name != last.name]
             if len(onward) != 1:
                 break
             last = onward[0]
             chain.append(last)
-            here = last.joins[1] if last.joins[0] == here else last.joins[0]
+            body_reached = last.joins[1] if last.joins[0] == body_reached else last.joins[0]
     return chain
 
 

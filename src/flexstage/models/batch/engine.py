@@ -84,8 +84,8 @@ def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None
     Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = plan(double_triangle(), ("parts.neck.thickness",))
-    >>> len(found.family.topology.bodies), [start.needed for start in found.starts]
+    >>> result = plan(double_triangle(), ("parts.neck.thickness",))
+    >>> len(result.family.topology.bodies), [start.needed for start in result.starts]
     (19, [6, 12])
     """
     return plan_family(family(mechanism, addresses), choice, ranges)
@@ -142,8 +142,8 @@ def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
     `Status` says that no result exists.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))
-    >>> found.frequencies[:2, 5].round(2).tolist(), Status(found.status[2]).name
+    >>> result = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))
+    >>> result.frequencies[:2, 5].round(2).tolist(), Status(result.status[2]).name
     ([173.09, 174.3], 'NONE')
     """
     values = np.asarray(values, dtype=float)
@@ -164,9 +164,9 @@ def _solve(plan_: Plan, values: Array, designs: Array, squares: Array, status: A
             portion = left[start : start + size]
             model = lumped(describe(plan_.family, values[portion]))
             for design, modes in zip(portion, whole_modes(model, len(portion), plan_.choice.cluster), strict=True):
-                found = platform_values(modes, plan_.choice)
-                if len(found) == plan_.choice.count:
-                    squares[design], status[design] = found, Status.WHOLE
+                result = platform_values(modes, plan_.choice)
+                if len(result) == plan_.choice.count:
+                    squares[design], status[design] = result, Status.WHOLE
     except DesignError:
         for half in np.array_split(designs, 2) if len(designs) > 1 else ():
             _solve(plan_, values, half, squares, status)
@@ -182,8 +182,8 @@ def _iterate(plan_: Plan, values: Array, designs: Array, squares: Array, status:
     for start in plan_.starts:
         if not len(left):
             break
-        found, good = solve_designs(library, plan_.tables, numbers[:, left], start, plan_.choice)
-        squares[designs[left[good]]], status[designs[left[good]]] = found[good], Status.ITERATED
+        result, good = solve_designs(library, plan_.tables, numbers[:, left], start, plan_.choice)
+        squares[designs[left[good]]], status[designs[left[good]]] = result[good], Status.ITERATED
         left = left[~good]
     return designs[left]
 
@@ -192,7 +192,7 @@ def _numbers(plan_: Plan, values: Array) -> Array:
     """The numbers of designs, by the fit within its ranges."""
     if plan_.surface is None:
         return numbers_of(plan_.family, values)
-    found, outside = plan_.surface.numbers(values), np.flatnonzero(~plan_.surface.holds(values))
+    result, outside = plan_.surface.numbers(values), np.flatnonzero(~plan_.surface.holds(values))
     if len(outside):
-        found[:, outside] = numbers_of(plan_.family, values[outside])
-    return found
+        result[:, outside] = numbers_of(plan_.family, values[outside])
+    return result

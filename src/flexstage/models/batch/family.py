@@ -111,13 +111,13 @@ def numbers_of(family_: Family, values: Array) -> Array:
     }
     laws = [law_and_mass(link.part, link.material) for link in distinct_links(assembly).values()]
     links = assembly.links.values()
-    found: list[Array] = [*(law.stiffness for law, _ in laws), *(mass for _, mass in laws), *(link.frame.rotation for link in links)]
+    kernel_rows: list[Array] = [*(law.stiffness for law, _ in laws), *(mass for _, mass in laws), *(link.frame.rotation for link in links)]
     for side in (0, 1):
         ends = [(link.joins[side], link.frame.position) for link in links]
-        found += [np.zeros(3) if body == GROUND else bodies[body].reference - place for body, place in ends]
+        kernel_rows += [np.zeros(3) if body == GROUND else bodies[body].reference - place for body, place in ends]
     for name in family_.topology.bodies:
         inertia = moving_inertia(mechanism, bodies[name])
-        found.append(np.zeros(10) if inertia is None else inertia[..., *INERTIA_ENTRIES])
+        kernel_rows.append(np.zeros(10) if inertia is None else inertia[..., *INERTIA_ENTRIES])
     shapes = [SHAPES[kind] for kind, count in family_.topology.counts.items() for _ in range(count)]
-    rows = [array.reshape(-1, int(np.prod(shape))).T for array, shape in zip(found, shapes, strict=True)]
+    rows = [array.reshape(-1, int(np.prod(shape))).T for array, shape in zip(kernel_rows, shapes, strict=True)]
     return np.concatenate([np.broadcast_to(row, (len(row), len(values))) for row in rows])

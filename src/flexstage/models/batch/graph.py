@@ -65,20 +65,20 @@ class Topology:
         >>> Topology(("platform",), ((0, -1, 0),), 1, locked=False).mirror[:7].tolist()
         [0, 6, 12, 18, 24, 30, 1]
         """
-        found = []
+        indices = []
         for kind, count in self.counts.items():
             shape = (count, *SHAPES[kind])
             own = self.starts[kind] + np.arange(int(np.prod(shape))).reshape(shape)
-            found.append((np.swapaxes(own, 1, 2) if kind in {"stiffness", "mass"} else own).ravel())
-        return np.concatenate(found)
+            indices.append((np.swapaxes(own, 1, 2) if kind in {"stiffness", "mass"} else own).ravel())
+        return np.concatenate(indices)
 
 
 def distinct_links(assembly: Assembly) -> dict[tuple[int, int], PlacedLink]:
     """The first link of each distinct pair of part and material."""
-    found: dict[tuple[int, int], PlacedLink] = {}
+    links: dict[tuple[int, int], PlacedLink] = {}
     for link in assembly.links.values():
-        found.setdefault((id(link.part), id(link.material)), link)
-    return found
+        links.setdefault((id(link.part), id(link.material)), link)
+    return links
 
 
 def topology(assembly: Assembly) -> Topology:
@@ -86,8 +86,8 @@ def topology(assembly: Assembly) -> Topology:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> found = topology(expand(double_triangle()))
-    >>> len(found.bodies), len(found.links), found.parts, found.locked
+    >>> result = topology(expand(double_triangle()))
+    >>> len(result.bodies), len(result.links), result.parts, result.locked
     (19, 27, 6, False)
     """
     bodies, parts = layout(assembly).bodies, distinct_links(assembly)
@@ -115,11 +115,11 @@ class Elimination:
     def updates(self) -> tuple[tuple[int, int, int], ...]:
         """Triples (edge, edge, target) of every product of two edges of one node; target -1 is the later node's own block."""
         place = {edge: number for number, edge in enumerate(self.edges)}
-        found: list[tuple[int, int, int]] = []
+        triples: list[tuple[int, int, int]] = []
         for _, own in itertools.groupby(range(len(self.edges)), key=lambda number: self.edges[number][0]):
             for left, right in itertools.combinations_with_replacement(own, 2):
-                found.append((left, right, -1 if left == right else place[self.edges[left][1], self.edges[right][1]]))
-        return tuple(found)
+                triples.append((left, right, -1 if left == right else place[self.edges[left][1], self.edges[right][1]]))
+        return tuple(triples)
 
 
 def elimination(count: int, edges: Iterable[tuple[int, int]], keep: int) -> Elimination:

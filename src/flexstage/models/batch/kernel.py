@@ -51,8 +51,8 @@ class _Task(ctypes.Structure):
 def kernel() -> ctypes.CDLL | None:
     """Load the library, or return `None` if there is none.
 
-    >>> found = kernel()
-    >>> found is None or found.flexstage_width() in (2, 4, 8)
+    >>> result = kernel()
+    >>> result is None or result.flexstage_width() in (2, 4, 8)
     True
     """
     library = kernel_library(SOURCE)
@@ -134,7 +134,7 @@ def kernel_tables(topology: Topology, graph: Elimination) -> dict[str, Array]:
     ends = [(part, place[one], place[two]) for part, one, two in topology.links]
     link = [(part, one, two, edge.get((min(one, two), max(one, two)), -1)) for part, one, two in ends]
     firsts, bodies = [first for first, _ in graph.edges], np.arange(len(graph.order) + 1)
-    found = {
+    tables = {
         "link": link,
         "range": np.searchsorted(firsts, bodies),
         "later": [later for _, later in graph.edges],
@@ -145,4 +145,4 @@ def kernel_tables(topology: Topology, graph: Elimination) -> dict[str, Array]:
         "inertia": topology.starts["inertia"] + 10 * np.array(graph.order),
         "start": [topology.starts[kind] for kind in SHAPES if kind != "inertia"],
     }
-    return {name: np.ascontiguousarray(table, dtype=np.int64) for name, table in found.items()}
+    return {name: np.ascontiguousarray(table, dtype=np.int64) for name, table in tables.items()}

@@ -92,9 +92,9 @@ def surface(family: Family, low: Array, high: Array) -> Surface | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.family import family
     >>> stage = family(double_triangle(), ("parts.neck.thickness", "materials.steel.young"))
-    >>> found = surface(stage, 0.95 * stage.nominal, 1.05 * stage.nominal)
+    >>> result = surface(stage, 0.95 * stage.nominal, 1.05 * stage.nominal)
     >>> value, upper = np.array([[1.5e-3, 205e9]]), stage.topology.mirror >= np.arange(len(stage.topology.mirror))
-    >>> bool(np.allclose(found.numbers(value)[upper], numbers_of(stage, value)[upper], rtol=1e-10, atol=1e-12))
+    >>> bool(np.allclose(result.numbers(value)[upper], numbers_of(stage, value)[upper], rtol=1e-10, atol=1e-12))
     True
     """
     fixed = numbers_of(family, family.nominal[None])[:, 0]
@@ -114,11 +114,11 @@ def surface(family: Family, low: Array, high: Array) -> Surface | None:
     pieces: list[Piece] = []
     for variables, rows in groups.items():
         highest = degrees[np.array(variables)][:, rows].max(axis=1)
-        found = _fit((np.array(variables), np.array(rows)), highest, (inner, fitted[rows], outer, met[rows]), scale[rows])
-        if found is None:
+        fit = _fit((np.array(variables), np.array(rows)), highest, (inner, fitted[rows], outer, met[rows]), scale[rows])
+        if fit is None:
             return None
-        pieces.append(found[0])
-        worst = max(worst, found[1])
+        pieces.append(fit[0])
+        worst = max(worst, fit[1])
     return Surface(low, high, fixed, tuple(pieces), worst) if worst <= TOLERANCE else None
 
 
@@ -130,24 +130,24 @@ def _ranges(low: Array, high: Array) -> tuple[Array, Array]:
 
 def _scale(family: Family, numbers: Array) -> Array:
     """Error scale of each number: the longest arm, one for axes, and the root of both diagonal entries in matrices."""
-    largest, found, start = np.max(np.abs(numbers), axis=1), [], 0
+    largest, scales, start = np.max(np.abs(numbers), axis=1), [], 0
     begin, end = family.topology.starts["first"], family.topology.starts["inertia"]
     for kind, count in family.topology.counts.items():
         for _ in range(count):
             own = largest[start : start + int(np.prod(SHAPES[kind]))]
             start += len(own)
             if kind in {"first", "second"}:
-                found.append(np.full(3, float(np.max(largest[begin:end]))))
+                scales.append(np.full(3, float(np.max(largest[begin:end]))))
             elif kind == "turn":
-                found.append(np.ones(9))
+                scales.append(np.ones(9))
             else:
                 rows, columns = INERTIA_ENTRIES if kind == "inertia" else np.divmod(np.arange(len(own)), SHAPES[kind][0])
                 square = dict(zip(zip(rows.tolist(), columns.tolist(), strict=True), own.tolist(), strict=True))
                 root = np.sqrt(
                     [square[0, 0] if place < 3 and kind == "inertia" else square[place, place] for place in range(max(rows) + 1)]
                 )
-                found.append(np.where(root[rows] * root[columns] > 0.0, root[rows] * root[columns], 1.0))
-    return np.concatenate(found)
+                scales.append(np.where(root[rows] * root[columns] > 0.0, root[rows] * root[columns], 1.0))
+    return np.concatenate(scales)
 
 
 def _degrees(family: Family, ranges: tuple[Array, Array], scale: Array) -> Array:

@@ -35,7 +35,7 @@ class Blockage:
     ends: tuple[str, ...] = ()
 
 
-def blockage(constraints: Array, stroke: int, names: Sequence[str], wanted: frozenset[str]) -> Blockage:
+def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: frozenset[str]) -> Blockage:
     """Find the blockage of a stroke: comparable rows (m, N), their names, and the stroke's column; the first six are the platform's.
 
     `wanted` are intended freedoms of their parts: they are freed first. Freeing must move the platform.
@@ -49,13 +49,13 @@ def blockage(constraints: Array, stroke: int, names: Sequence[str], wanted: froz
     alone = _decisive(constraints, stroke) & ~_decisive(_at_platform(constraints), stroke)[: len(constraints)]
     single = [row for row in against if alone[row]]
     if single:
-        meant = [row for row in single if names[row] in wanted]
+        meant = [row for row in single if names[row] in intended]
         return Blockage(_unique_names(against, names), _unique_names(meant or single, names))
     left, freed, held = list(range(len(names))), [], []
     while against and not _moves(constraints[left], stroke):
         rows = [left[row] for row in against]
         held += rows
-        freed.append(next((row for row in rows if names[row] in wanted), rows[0]))
+        freed.append(next((row for row in rows if names[row] in intended), rows[0]))
         left.remove(freed[-1])
         against = _against(constraints[left], stroke)
     return Blockage(_unique_names(held, names), _unique_names(freed, names), together=True)

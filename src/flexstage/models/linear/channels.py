@@ -78,8 +78,8 @@ def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> found = output_channels(expand(parallelogram()))
-    >>> found[0].name, found[-1].name, len(found) == 6 * (4 + 5) + 1  # places, links, a gauge
+    >>> result = output_channels(expand(parallelogram()))
+    >>> result[0].name, result[-1].name, len(result) == 6 * (4 + 5) + 1  # places, links, a gauge
     ('platform.x', 'B/front.mz', True)
     """
     return (
@@ -143,15 +143,15 @@ def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
 
 def reading(gauge: PlacedGauge, at: Callable[[str, Frame], Array]) -> Array:
     """Compute the gauge reading (..., 1, n) of the twists (..., 6, n) of bodies at frames."""
-    first, *rest = (see(sight, at) for sight in gauge.sights)
-    return sum(rest, first)
+    first, *others = (see(sight, at) for sight in gauge.sights)
+    return sum(others, first)
 
 
 def see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
     """Compute the contribution (..., 1, n) of one weighted line of sight of a gauge, or of a stop."""
     rows = slice(sight.component, sight.component + 1)
-    seen = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
-    return np.asarray(sight.weight)[..., None, None] * seen
+    motion = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
+    return np.asarray(sight.weight)[..., None, None] * motion
 
 
 def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:

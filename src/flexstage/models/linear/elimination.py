@@ -111,13 +111,13 @@ _Choice = tuple[tuple[int, ...], tuple[int, ...]]
 
 def _by_choice(designs: Array, scale: Array, keep: tuple[int, ...]) -> dict[_Choice, list[int]]:
     """Numbers of the designs (b, m, N) by common choice of pivots; complex steps of one design share its choice."""
-    found: dict[_Choice, list[int]] = {}
+    result: dict[_Choice, list[int]] = {}
     last: _Choice | None = None
     for number, (rows, sizes) in enumerate(zip(designs, scale, strict=True)):
         stays = last is not None and np.array_equal(rows, designs[number - 1]) and np.array_equal(sizes, scale[number - 1])
         last = last if stays and last is not None else _choice(rows, sizes, keep)
-        found.setdefault(last, []).append(number)
-    return found
+        result.setdefault(last, []).append(number)
+    return result
 
 
 def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], keep: tuple[int, ...]) -> None:
@@ -126,14 +126,14 @@ def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], k
     for part, numbers in zip(parts[1:], designs[1:], strict=True):
         theirs = _freedom(part, keep)
         if theirs != mine:
-            counts = [f"{len(kept)} of the platform and {beside} others" for kept, beside in (theirs, mine)]
+            counts = [f"{len(kept)} of the platform and {others} others" for kept, others in (theirs, mine)]
             other = counts[0] if counts[0] != counts[1] else "as many, but other ones"
             raise unlike(numbers[0], f"has other motions than the first, which has {counts[1]}: {other}")
 
 
-def _freedom(found: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
-    kept = tuple(index for index in found.independent if index in keep)
-    return kept, len(found.independent) - len(kept)
+def _freedom(solution: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
+    kept = tuple(index for index in solution.independent if index in keep)
+    return kept, len(solution.independent) - len(kept)
 
 
 def _choice(rows: Array, scale: Array, keep: tuple[int, ...]) -> _Choice:
@@ -170,8 +170,8 @@ def imposed_motion(solution: Elimination, constraints: Array, imposed: Array) ->
     """
     square = constraints[..., solution.rows, :][..., solution.dependent]
     result = np.zeros((*constraints.shape[:-2], constraints.shape[-1], imposed.shape[-1]), dtype=constraints.dtype)
-    wanted = np.broadcast_to(imposed[list(solution.rows)], (*square.shape[:-2], len(solution.rows), imposed.shape[-1]))
-    result[..., solution.dependent, :] = np.linalg.solve(square, wanted)
+    target = np.broadcast_to(imposed[list(solution.rows)], (*square.shape[:-2], len(solution.rows), imposed.shape[-1]))
+    result[..., solution.dependent, :] = np.linalg.solve(square, target)
     return result
 
 

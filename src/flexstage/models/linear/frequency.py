@@ -113,7 +113,7 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
         "response",
         f"{lines:,} lines of {outputs:,} outputs and {inputs:,} inputs",
         each * lines,
-        lambda there: f"Request {int(there / each):,} lines at most, or fewer outputs and inputs",
+        lambda memory: f"Request {int(memory / each):,} lines at most, or fewer outputs and inputs",
     )
     if isinstance(damping, StructuralDamping):
         return _structural(model, chosen, frequencies)
@@ -124,10 +124,10 @@ def _structural(model: LinearModel, chosen: Ports, frequencies: Array) -> Array:
     lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
     stiffness = structural_stiffness(model)
     if model.viscous:
-        found = _with_dampers(model, lossy, frequencies, StructuralDamping(), stiffness)
+        responses = _with_dampers(model, lossy, frequencies, StructuralDamping(), stiffness)
     else:
-        found = direct(stiffness, model.inertia_matrix, lossy, frequencies)
-    return found * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
+        responses = direct(stiffness, model.inertia_matrix, lossy, frequencies)
+    return responses * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
 
 
 def _with_dampers(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping, stiffness: Array) -> Array:
@@ -228,10 +228,10 @@ def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Da
     solved = eigen(model)
     omega = 2.0 * np.pi * frequencies
     square = (omega**2)[:, None, None]
-    seen = (chosen.output @ solved.shapes)[..., None, :, :]
+    output = (chosen.output @ solved.shapes)[..., None, :, :]
     gains = 1.0 / _denominators(model, solved, omega, damping)
     force, inertial = modal_forces(solved, chosen)
-    response = (seen * gains[..., None, :]) @ (force[..., None, :, :] + square * inertial[..., None, :, :])
+    response = (output * gains[..., None, :]) @ (force[..., None, :, :] + square * inertial[..., None, :, :])
     fast = 1.0 / (1.0 + 1j * omega * _stiffness_factor(damping))[..., None, None]
     remainder = residual(model, solved, chosen)[..., None, :, :]
     return response + fast * remainder + chosen.feedthrough[..., None, :, :]

@@ -243,13 +243,13 @@ def _by_link(freedoms: tuple[str, ...]) -> str:
 
 
 def _freeing(blockage: Blockage) -> str:
-    *rest, last = blockage.free or ("one of them",)
+    *others, last = blockage.free or ("one of them",)
     word = "and" if blockage.together else "or"
-    told = f"ree {', '.join(rest)} {word} {last}" if rest else f"ree {last}"
+    hint = f"ree {', '.join(others)} {word} {last}" if others else f"ree {last}"
     if not blockage.ends:
-        return f"F{told}"
+        return f"F{hint}"
     hinge = "a hinge at each end" if len(blockage.ends) > 1 else "a hinge at that end"
-    return f"It joins {' and '.join(blockage.ends)} without a hinge, and is elastic along its axis only: put {hinge}; or f{told}"
+    return f"It joins {' and '.join(blockage.ends)} without a hinge, and is elastic along its axis only: put {hinge}; or f{hint}"
 
 
 def _scales(names: tuple[str, ...], rotation: Number) -> Array:

@@ -156,15 +156,15 @@ class Solver:
         factor, rows, pull = self._augmented
         over = self.scale.reshape(-1, *[1] * (load.ndim - 1))
         count = rows.shape[0]
-        given = np.zeros((count, *load.shape[1:])) if imposed is None else self._root[:, None] * imposed
-        whole = np.concatenate([given, load / over])
+        strains = np.zeros((count, *load.shape[1:])) if imposed is None else self._root[:, None] * imposed
+        whole = np.concatenate([strains, load / over])
 
-        def missing(wanted: Array, found: Array) -> Array:
-            strain, motion = found[:count], found[count:]
-            return np.concatenate([wanted[:count] - strain + rows @ motion, wanted[count:] - pull @ strain])
+        def missing(target: Array, solution: Array) -> Array:
+            strain, motion = solution[:count], solution[count:]
+            return np.concatenate([target[:count] - strain + rows @ motion, target[count:] - pull @ strain])
 
-        found, left = _refine(whole, factor.solve, missing)
-        return found[count:] / over, left
+        solution, left = _refine(whole, factor.solve, missing)
+        return solution[count:] / over, left
 
 
 def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
@@ -178,9 +178,9 @@ def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
     soft = scipy.sparse.diags_array(np.where(rigid, _SOFT, 1.0))
     whole = scipy.sparse.block_array([[soft, -rows], [rows.T, None]], format="csc")
 
-    def missing(wanted: Array, found: Array) -> Array:
-        force, motion = found[:count], found[count:]
-        return np.concatenate([wanted[:count] - give @ force + rows @ motion, wanted[count:] - rows.T @ force])
+    def missing(target: Array, solution: Array) -> Array:
+        force, motion = solution[:count], solution[count:]
+        return np.concatenate([target[:count] - give @ force + rows @ motion, target[count:] - rows.T @ force])
 
     try:
         with _fits(whole):
@@ -188,8 +188,8 @@ def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
     except RuntimeError:  # exactly singular
         return None
     load = np.concatenate([imposed, np.zeros((size, imposed.shape[1]))])
-    found, left = _refine(load, factor.solve, missing, first=count)  # forces of redundant strains do not converge
-    return found[count:] if left <= _ENOUGH else None
+    solution, left = _refine(load, factor.solve, missing, first=count)  # forces of redundant strains do not converge
+    return solution[count:] if left <= _ENOUGH else None
 
 
 def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Array, float]:
@@ -197,18 +197,18 @@ def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Arra
 
     `solve` solves loads (n, k) approximately, `missing` returns the residual load of a solution.
     """
-    found = solve(load)
+    solution = solve(load)
     last = np.inf
     for _ in range(_STEPS):
-        step = solve(missing(load, found))
-        before = np.maximum(np.linalg.norm(found[first:], axis=0), np.finfo(float).tiny)
+        step = solve(missing(load, solution))
+        before = np.maximum(np.linalg.norm(solution[first:], axis=0), np.finfo(float).tiny)
         size = float(np.max(np.linalg.norm(step[first:], axis=0) / before, initial=0.0))
         if not size < 0.5 * last:
             break
-        found, last = found + step, size
+        solution, last = solution + step, size
         if size < _EXACT:
             break
-    return found, last
+    return solution, last
 
 
 def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:
@@ -234,12 +234,12 @@ def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Arr
         scipy.sparse.linalg.LinearOperator(shape, matvec=each, dtype=float)
         for each in (lambda motion: solver.stiffness @ motion, lambda motion: inertia.matrix @ motion, solver.solve)
     )
-    found = scipy.sparse.linalg.eigsh(
+    result = scipy.sparse.linalg.eigsh(
         stiffness, min(count, max(1, size // 3)), mass, sigma=0.0, OPinv=inverse, v0=1.0 + 0.5 * np.cos(np.arange(size)), which="LM"
     )[1]
-    inverse_values, turn = scipy.linalg.eigh(found.T @ (inertia @ found), found.T @ (solver.stiffness @ found))
+    inverse_values, turn = scipy.linalg.eigh(result.T @ (inertia @ result), result.T @ (solver.stiffness @ result))
     kept = np.flatnonzero(inverse_values > _MASSLESS * inverse_values[-1])[::-1]
-    return 1.0 / inverse_values[kept], found @ turn[:, kept] / np.sqrt(inverse_values[kept])
+    return 1.0 / inverse_values[kept], result @ turn[:, kept] / np.sqrt(inverse_values[kept])
 
 
 def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
@@ -254,10 +254,10 @@ def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, A
     )
     ways = {"which": "SA", "tol": _RATIO, "maxiter": _RESTARTS, "v0": 1.0 + 0.5 * np.cos(np.arange(size))}
     try:
-        found = scipy.sparse.linalg.eigsh(taken.matrix, min(count, size - 1), stiffness, Minv=inverse, **ways)[1]
+        result = scipy.sparse.linalg.eigsh(taken.matrix, min(count, size - 1), stiffness, Minv=inverse, **ways)[1]
     except scipy.sparse.linalg.ArpackNoConvergence as error:
-        found = error.eigenvectors
-        if not found.shape[1]:
+        result = error.eigenvectors
+        if not result.shape[1]:
             raise refuse("stage", "no eigenvalue converges to the lowest load factor", "Analyse its loads one by one") from None
-    values, turn = scipy.linalg.eigh(found.T @ (taken @ found), found.T @ (solver.stiffness @ found))
-    return cast("Array", values), found @ turn
+    values, turn = scipy.linalg.eigh(result.T @ (taken @ result), result.T @ (solver.stiffness @ result))
+    return cast("Array", values), result @ turn

@@ -71,15 +71,15 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
     omega = np.sqrt(solved.values)
     rate = _square(2.0 * law_ratios(model, solved, damping) * omega) + viscous_coupling(model, solved)
     force, inertial = modal_forces(solved, chosen)
-    seen = chosen.output @ solved.shapes
+    output = chosen.output @ solved.shapes
     carried = rate @ inertial + _damped_by_inputs(model, solved, chosen)
     lower = force + solved.values[..., None] * inertial - rate @ carried
-    zero = np.zeros_like(seen)
+    zero = np.zeros_like(output)
     return StateSpace(
         A=_dynamics(solved.values, rate),
         B=np.concatenate(np.broadcast_arrays(carried, lower), axis=-2),
-        C=np.concatenate([seen, zero], axis=-1),
-        D=chosen.feedthrough + residual(model, solved, chosen) - seen @ inertial,
+        C=np.concatenate([output, zero], axis=-1),
+        D=chosen.feedthrough + residual(model, solved, chosen) - output @ inertial,
         states=tuple(f"mode{number + 1}{mark}" for mark in ("", "'") for number in range(omega.shape[-1])),
         inputs=chosen.inputs,
         outputs=chosen.outputs,

@@ -40,12 +40,12 @@ def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
     >>> from flexstage.models.lumped import lumped
     >>> require_still(lumped(parallelogram()), ["S"])
     """
-    seen = _idle_seen(model)
+    visible = _idle_seen(model)
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
     require(
         Finding(name, f"this gauge sees a free internal mode (zero stiffness): {_names(model)}", f"{_ADVICE}, or move the gauge")
         for name in outputs
-        if number[name] in seen and name.rpartition(".")[2] not in (*COMPONENTS, *FORCES)
+        if number[name] in visible and name.rpartition(".")[2] not in (*COMPONENTS, *FORCES)
     )
 
 
@@ -71,9 +71,9 @@ def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[st
     >>> from flexstage.models.lumped import lumped
     >>> require_held(lumped(parallelogram()), ["S"], ["corner.fx"])
     """
-    seen, driving = _idle_seen(model), _driving(model)
+    visible, driving = _idle_seen(model), _driving(model)
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
-    watched = {motion for name in outputs for motion in seen.get(number[name], ())}
+    watched = {motion for name in outputs for motion in visible.get(number[name], ())}
     require(
         Finding(name, f"drives a free internal mode (zero stiffness) that an output sees: {_names(model)}", _ADVICE)
         for name in inputs
@@ -110,8 +110,8 @@ def _idle_seen(model: LinearModel) -> dict[int, set[int]]:
     if model.idle_output is None:
         return {}
     first = np.abs(np.real(first_design(model.idle_output, 2)))
-    found = first > _SEEN * np.max(first, axis=0, initial=0.0)
-    return {int(row): set(np.flatnonzero(found[row]).tolist()) for row in np.flatnonzero(found.any(axis=1))}
+    visible = first > _SEEN * np.max(first, axis=0, initial=0.0)
+    return {int(row): set(np.flatnonzero(visible[row]).tolist()) for row in np.flatnonzero(visible.any(axis=1))}
 
 
 def _driving(model: LinearModel) -> dict[str, set[int]]:
@@ -119,8 +119,8 @@ def _driving(model: LinearModel) -> dict[str, set[int]]:
     return dict(_pairs(model.outputs, _idle_seen(model)))
 
 
-def _pairs(outputs: tuple[Channel, ...], seen: dict[int, set[int]]) -> Iterator[tuple[str, set[int]]]:
-    for row, motions in seen.items():
+def _pairs(outputs: tuple[Channel, ...], visible: dict[int, set[int]]) -> Iterator[tuple[str, set[int]]]:
+    for row, motions in visible.items():
         owner, _, component = outputs[row].name.rpartition(".")
         if component in COMPONENTS:
             yield f"{owner}.{FORCES[COMPONENTS.index(component)]}", motions

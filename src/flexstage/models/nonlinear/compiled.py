@@ -74,8 +74,8 @@ class Tables:
 def kernel() -> ctypes.CDLL | None:
     """Load the library, or return `None` if there is none.
 
-    >>> found = kernel()
-    >>> found is None or found.flexstage_equilibria_width() in (2, 4, 8)
+    >>> result = kernel()
+    >>> result is None or result.flexstage_equilibria_width() in (2, 4, 8)
     True
     """
     library = kernel_library(Path(__file__).with_name("kernel.c"))
@@ -93,10 +93,10 @@ def tables(model: Nonlinear) -> Tables | None:
     >>> [sizes["links"] for sizes in tables(nonlinear(parallelogram())).sizes]
     [2, 2]
     """
-    found = [_group(group) for group in model.flexures]
-    if model.freedoms > _MOST["unknowns"] or not found or None in found:
+    groups = [_group(group) for group in model.flexures]
+    if model.freedoms > _MOST["unknowns"] or not groups or None in groups:
         return None
-    known = [each for each in found if each is not None]
+    known = [each for each in groups if each is not None]
     return Tables(tuple(sizes for sizes, _ in known), tuple(arrays for _, arrays in known))
 
 
@@ -111,17 +111,17 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: Solve
     pose = Pose(
         _copy(start.position), _copy(start.turn), tuple(map(_copy, start.strain)), tuple(map(_copy, start.wrench)), _copy(start.held)
     )
-    told = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
-    given = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
-    held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | told | given
+    results = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
+    terms = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
+    held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | results | terms
     groups, settings = _groups(model, pose), (model.size, model.reach, options.step, options.gap, options.limit)
     sizes = (cases, len(model.bodies), pose.held.shape[1], len(groups), len(held["body"]), options.iterations, int(np.any(loads.gravity)))
     task: Any = _Task()
     _fill(task, dict(zip((*_SIZES, *_SETTINGS), (*sizes, *settings), strict=True)), held)
     task.group = ctypes.addressof(groups)
     if library.flexstage_equilibria(ctypes.byref(task)):
-        told["status"][:], told["moved"][:] = 2, np.nan
-    return Ended(pose, **told)
+        results["status"][:], results["moved"][:] = 2, np.nan
+    return Ended(pose, **results)
 
 
 def _groups(model: Nonlinear, pose: Pose) -> Any:
@@ -164,17 +164,21 @@ def _group(group: Flexures) -> tuple[Mapping[str, int], Mapping[str, Array]] | N
         *(np.moveaxis(np.sum(each, axis=-2), -1, -2) for each in (law.modes, law.inner)),
         *(law.form, law.rest, law.plate, law.compliance, np.stack(scalar, axis=-1), group.turn, group.arm_first, group.arm_second),
     )
-    found: dict[str, Array] = {name: _copy(each) for name, each in zip((*_GROUP_TABLES, "turn", "first", "second"), arrays, strict=True)}
-    found["joins"] = np.stack([group.first, group.second], axis=-1).astype(np.int64, order="C")
+    group_tables: dict[str, Array] = {
+        name: _copy(each) for name, each in zip((*_GROUP_TABLES, "turn", "first", "second"), arrays, strict=True)
+    }
+    group_tables["joins"] = np.stack([group.first, group.second], axis=-1).astype(np.int64, order="C")
     sizes = (len(group.names), points, *counts, count)
-    return dict(zip(_GROUP_SIZES, sizes, strict=True)), found
+    return dict(zip(_GROUP_SIZES, sizes, strict=True)), group_tables
 
 
 def _axes(law: FlexureLaw) -> tuple[int, ...] | None:
     """Numbers of modes for twist and bending about y and z, if they are in this order, each about one axis, and decoupled."""
-    seen = np.any(law.modes != 0.0, axis=tuple(range(law.modes.ndim - 2))) | np.any(law.inner != 0.0, axis=tuple(range(law.inner.ndim - 2)))
-    axis = np.argmax(seen, axis=0)
-    if np.any(np.sum(seen, axis=0) != 1) or np.any(np.diff(axis) < 0):
+    nonzero = np.any(law.modes != 0.0, axis=tuple(range(law.modes.ndim - 2))) | np.any(
+        law.inner != 0.0, axis=tuple(range(law.inner.ndim - 2))
+    )
+    axis = np.argmax(nonzero, axis=0)
+    if np.any(np.sum(nonzero, axis=0) != 1) or np.any(np.diff(axis) < 0):
         return None
     count = len(axis)
     apart = axis[:, None] != axis

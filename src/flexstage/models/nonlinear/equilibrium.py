@@ -125,10 +125,10 @@ def why_without(status: int, share: float) -> str:
     return f"{what} under the whole load; {far}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
-def require_equilibrium(found: State) -> None:
+def require_equilibrium(solution: State) -> None:
     """Refuse a case without an equilibrium that continues the unloaded stage, with the load of the critical point or path end."""
-    if not bool(found.converged):
-        status, share = int(found.status), float(found.reached)
+    if not bool(solution.converged):
+        status, share = int(solution.status), float(solution.reached)
         far = f": equilibrium was followed to {share:.3g} of them" if share else ""
         known = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
         what = why_without(status, share) if known else f"under its weight and loads no equilibrium was found{far}"
@@ -173,16 +173,16 @@ def equilibrium(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = equilibrium(nonlinear(parallelogram()), {"platform.fx": [100.0, 200.0]}, weight=0.0)
-    >>> (found.displacement()[:, 0] * 1e6).round(1).tolist()
+    >>> result = equilibrium(nonlinear(parallelogram()), {"platform.fx": [100.0, 200.0]}, weight=0.0)
+    >>> (result.displacement()[:, 0] * 1e6).round(1).tolist()
     [5.2, 10.3]
     """
-    asked = _asked(model, loads or {}, hold or {}, weight, stated)
-    first = _first(model, start, asked.hold, len(asked.loads.inputs))
-    found = rescue(model, asked.loads, asked.hold, equilibrate(model, first, asked.loads, asked.hold, options), options)
+    request = _asked(model, loads or {}, hold or {}, weight, stated)
+    first = _first(model, start, request.hold, len(request.loads.inputs))
+    solution = rescue(model, request.loads, request.hold, equilibrate(model, first, request.loads, request.hold, options), options)
     if start is None:
-        found = _continued(model, asked, found, options)
-    return state(model, asked.loads, asked.hold, found, (asked.shape, asked.held))
+        solution = _continued(model, request, solution, options)
+    return state(model, request.loads, request.hold, solution, (request.shape, request.held))
 
 
 def equilibria(
@@ -210,32 +210,32 @@ def equilibria(
     """
     _require_alike(models)
     held = [hold or {}] * len(models) if isinstance(hold, Mapping | None) else hold
-    asked = [_asked(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
-    starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, asked, strict=True)]
-    tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, asked, strict=True)]
-    found = equilibrate_designs(tasks, options)
-    rescued = (rescue(each.model, each.loads, each.hold, one, options) for each, one in zip(tasks, found, strict=True))
+    requests = [_asked(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
+    starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, requests, strict=True)]
+    tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, requests, strict=True)]
+    solutions = equilibrate_designs(tasks, options)
+    rescued = (rescue(each.model, each.loads, each.hold, one, options) for each, one in zip(tasks, solutions, strict=True))
     return [
         state(model, each.loads, each.hold, _continued(model, each, one, options), (each.shape, each.held))
-        for model, each, one in zip(models, asked, rescued, strict=True)
+        for model, each, one in zip(models, requests, rescued, strict=True)
     ]
 
 
-def _continued(model: Nonlinear, asked: _Asked, found: Found, options: SolverOptions) -> Found:
+def _continued(model: Nonlinear, request: _Asked, solution: Found, options: SolverOptions) -> Found:
     """The result if it continues the unloaded stage; else the continuation, or the reason why there is none."""
-    known = np.flatnonzero(found.status == Status.CONVERGED)
+    known = np.flatnonzero(solution.status == Status.CONVERGED)
     if not options.arcs or options.past or not known.size:
-        return found
+        return solution
     one, none = known[:1], np.zeros(1)
-    loads, hold = asked.loads.of(one).times(none), replace(asked.hold.of(one), value=0.0 * asked.hold.value[one])
+    loads, hold = request.loads.of(one).times(none), replace(request.hold.of(one), value=0.0 * request.hold.value[one])
     drawn = equilibrate(model, _first(model, None, hold, 1), loads, hold)
     if drawn.status[0] != Status.CONVERGED:
-        return found
+        return solution
     for case in known[:, None]:
-        end = Task(model, found.pose.of(case), asked.loads.of(case), asked.hold.of(case))
+        end = Task(model, solution.pose.of(case), request.loads.of(case), request.hold.of(case))
         on = continued(Task(model, drawn.pose, loads, hold), end)
-        found = merge(found, case, replace(on, iterations=found.iterations[case], residual=found.residual[case]))
-    return found
+        solution = merge(solution, case, replace(on, iterations=solution.iterations[case], residual=solution.residual[case]))
+    return solution
 
 
 def _require_alike(models: Sequence[Nonlinear]) -> None:
@@ -244,8 +244,8 @@ def _require_alike(models: Sequence[Nonlinear]) -> None:
     for number, other in enumerate(models[1:], start=2):
         for what, of in _STRUCTURE.items():
             if of(first) != of(other):
-                said = f"its {what} differ from the first design: {_first_difference(of(first), of(other))}"
-                raise refuse(f"design {number}", said, "Analyse designs of another structure separately")
+                difference = f"its {what} differ from the first design: {_first_difference(of(first), of(other))}"
+                raise refuse(f"design {number}", difference, "Analyse designs of another structure separately")
 
 
 _STRUCTURE: Mapping[str, Callable[[Nonlinear], list[object]]] = {
@@ -278,11 +278,11 @@ def corrected(
     One step would suffice if the stiffness were the derivative of the residual to more than the 1e-6 of its rule. Loads and fixed
     coordinates are those of `start`. Cases without a state in `start` have none in the result.
     """
-    asked = _asked(model, loads or {}, hold or {}, weight, stated)
-    pose = _first(model, start, asked.hold, len(asked.loads.inputs))
-    found = search(model, pose, asked.loads, asked.hold, replace(USUAL, iterations=2))
-    status = np.where(found.status == Status.SINGULAR, found.status, np.broadcast_to(start.status.ravel(), found.status.shape))
-    return state(model, asked.loads, asked.hold, replace(found, status=status), (asked.shape, asked.held))
+    request = _asked(model, loads or {}, hold or {}, weight, stated)
+    pose = _first(model, start, request.hold, len(request.loads.inputs))
+    solution = search(model, pose, request.loads, request.hold, replace(USUAL, iterations=2))
+    status = np.where(solution.status == Status.SINGULAR, solution.status, np.broadcast_to(start.status.ravel(), solution.status.shape))
+    return state(model, request.loads, request.hold, replace(solution, status=status), (request.shape, request.held))
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,11 +309,11 @@ def _asked(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, Num
     return _Asked(whole, _hold(model, held, flat[len(loads) : len(loads) + len(held)], cases), shape, tuple(held))
 
 
-def state(model: Nonlinear, loads: Loads, hold: Hold, found: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:
+def state(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:
     """Build the state of a solution, with its cases in a shape and its fixed coordinates by name."""
     shape, held = labels
-    status, iterations, residual, reached = (getattr(found, name).reshape(shape) for name in TOLD)
-    return State(model, loads, hold, found.pose, shape, status, iterations, residual, reached, held)
+    status, iterations, residual, reached = (getattr(solution, name).reshape(shape) for name in TOLD)
+    return State(model, loads, hold, solution.pose, shape, status, iterations, residual, reached, held)
 
 
 def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pose:
@@ -328,9 +328,9 @@ def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pos
 
 def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cases: int) -> Hold:
     places = [name.rpartition(".") for name in held]
-    found = [place(model, owner) for owner, _, _ in places]
-    body = np.array([number for number, _ in found], dtype=int)
-    arm = np.array([arm for _, arm in found]).reshape(-1, 3)
+    coordinates = [place(model, owner) for owner, _, _ in places]
+    body = np.array([number for number, _ in coordinates], dtype=int)
+    arm = np.array([arm for _, arm in coordinates]).reshape(-1, 3)
     component = np.array([COMPONENTS.index(name) for _, _, name in places], dtype=int)
     return Hold(
         body,
@@ -341,9 +341,9 @@ def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cas
     )
 
 
-def _unknown_inputs(model: Nonlinear, given: Mapping[str, Number]) -> Iterator[Finding]:
+def _unknown_inputs(model: Nonlinear, loads: Mapping[str, Number]) -> Iterator[Finding]:
     names = [channel.name for channel in model.inputs]
-    for name in given:
+    for name in loads:
         if name not in names:
             yield Finding(name, "not a load of this stage", suggest_nearest(name, names))
 

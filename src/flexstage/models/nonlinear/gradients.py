@@ -52,12 +52,12 @@ def evaluate_designs(
     (2, 6)
     """
     count = designs(mechanism)
-    found: list[Array] = []
+    result: list[Array] = []
     for first in range(0, count or 1, _AT_ONCE):
         places = range(first, min(first + _AT_ONCE, count or 1))
         models = [nonlinear(mechanism if count is None else design(mechanism, place)) for place in places]
-        found += [np.asarray(results(each)) for each in equilibria(models, loads, hold=hold, weight=weight, stated=stated)]
-    return found[0] if count is None else np.stack(found)
+        result += [np.asarray(results(each)) for each in equilibria(models, loads, hold=hold, weight=weight, stated=stated)]
+    return result[0] if count is None else np.stack(result)
 
 
 @check_arguments
@@ -82,22 +82,22 @@ def gradients(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()
-    >>> found = gradients(stage, ["materials.steel.young"], lambda state: state.displacement()[0], {"platform.fx": 100.0}, weight=0.0)
-    >>> bool(found[0] < 0.0)
+    >>> result = gradients(stage, ["materials.steel.young"], lambda state: state.displacement()[0], {"platform.fx": 100.0}, weight=0.0)
+    >>> bool(result[0] < 0.0)
     True
     """
     begin = equilibrium(nonlinear(mechanism), loads, hold=hold, weight=weight, stated=stated)
 
-    def beside(model: Nonlinear) -> Array:
+    def evaluate_near(model: Nonlinear) -> Array:
         return np.asarray(results(corrected(model, begin, loads, hold=hold, weight=weight, stated=stated)))
 
-    return np.stack([_slope(mechanism, name, begin.model.size, beside) for name in names])
+    return np.stack([_slope(mechanism, name, begin.model.size, evaluate_near) for name in names])
 
 
-def _slope(mechanism: Mechanism, name: str, size: float, beside: Callable[[Nonlinear], Array]) -> Array:
+def _slope(mechanism: Mechanism, name: str, size: float, evaluate_near: Callable[[Nonlinear], Array]) -> Array:
     value = get(mechanism, name)
     if value is None or not isinstance(locate(mechanism, name).node, NumberNode):
         raise refuse(name, "not a single number of the description", "Specify the number, or use another one")
     step = _SHARE * (abs(float(value)) or size)
     moved = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
-    return np.sum([weight * beside(model) for model, weight in zip(moved, _STENCIL.values(), strict=True)], axis=0) / step
+    return np.sum([weight * evaluate_near(model) for model, weight in zip(moved, _STENCIL.values(), strict=True)], axis=0) / step

@@ -84,8 +84,8 @@ def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
     residual, kept = _nothing(model, pose, hold)
     tally = Tally(residual, empty_sum(*residual.shape))
     bent = tuple(bend(group, pose, number, loads) for number, group in enumerate(model.flexures))
-    for group, found in zip(model.flexures, bent, strict=True):
-        force, own = _flexure_terms(group.law, found)
+    for group, terms in zip(model.flexures, bent, strict=True):
+        force, own = _flexure_terms(group.law, terms)
         _scatter(tally, group, force, own)
     _add_loads(model, pose, loads, tally)
     _add_rest(model, pose, loads, hold, tally)
@@ -199,14 +199,16 @@ def _flexure_terms(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
 
 def _add_weight(law: FlexureLaw, bent: Bent, motion: Array, residual: Array, stiffness: Array) -> tuple[Array, Array]:
     """Add the weight of the flexures (docs/nonlinear.md, 16)."""
-    count, moved, found = law.form.shape[-1], bent.answer.moved, bent.tangent
-    assert found.hung is not None  # noqa: S101
-    assert found.swayed is not None  # noqa: S101
+    count, moved, element = law.form.shape[-1], bent.answer.moved, bent.tangent
+    assert element.hung is not None  # noqa: S101
+    assert element.swayed is not None  # noqa: S101
     sway = weight_motion(bent)
     unit = (law.rigidity / law.length)[:, None, None, None]
     down = moved[..., :6] @ motion + moved[..., 6:] @ sway
     mean = (
-        found.hung @ down[..., :count, :] + found.swayed[..., 0, :, :] @ down[..., count : count + 3, :] + found.swayed[..., 1, :, :] @ sway
+        element.hung @ down[..., :count, :]
+        + element.swayed[..., 0, :, :] @ down[..., count : count + 3, :]
+        + element.swayed[..., 1, :, :] @ sway
     )
     stiffness = stiffness + unit * (_transpose(motion) @ (moved[..., count:, 6:] @ sway) - _transpose(sway) @ mean)
     weight, hanging = _weight_of(law, bent)
@@ -268,15 +270,15 @@ def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None
 def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
     """Compute the generalised forces (b, n) of loads on bodies and locked freedoms at a pose, linear in the loads."""
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
-    found = []
+    result = []
     for inputs in (0.0 * rate.inputs, rate.inputs):
         tally = Tally(np.zeros((cases, size)), empty_sum(cases, size))
         loads = Loads(inputs, np.zeros((cases, 3)), np.zeros(cases))
         _add_hinges(model, pose, loads, tally)
         _add_loads(model, pose, loads, tally)
-        found.append(tally.residual)
+        result.append(tally.residual)
     kept = np.r_[: model.freedoms, model.freedoms + 6 : size]
-    return (found[0] - found[1])[:, kept]
+    return (result[0] - result[1])[:, kept]
 
 
 def _add_holds(hold: Hold, pose: Pose, tally: Tally, start: int) -> None:
@@ -322,11 +324,11 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, s
 def apart(model: Nonlinear, bent: tuple[Bent, ...], step: Array) -> Array:
     """Return the largest relative motion (b,) of flexure ends in a step (b, n), over the length and in radians."""
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((len(step), 6))], axis=1).reshape(len(step), -1, 6)
-    found = [np.zeros(len(step))]
+    largest = [np.zeros(len(step))]
     for group, each in zip(model.flexures, bent, strict=True):
         both = np.concatenate([np.moveaxis(moved[:, bodies], 1, 0) for bodies in (group.first, group.second)], axis=-1)[..., None]
-        found.append(np.max(np.abs(end_motion(group.law, each) @ both), axis=(0, 2, 3)))
-    return np.max(np.stack(found), axis=0)
+        largest.append(np.max(np.abs(end_motion(group.law, each) @ both), axis=(0, 2, 3)))
+    return np.max(np.stack(largest), axis=0)
 
 
 def follow(group: Flexures, bent: Bent, moved: Array) -> Array:

@@ -161,18 +161,18 @@ def _assembled(
         stiffness[name] = Contribution(rows[place] @ select, model.hinges.stiffness[place], _loss(model, name))
         _add(bending, select, remains[place])
     for element in model.elements:
-        stiffness[element.name], rest = _strained(state, order, element)
-        bending += rest
+        stiffness[element.name], remainder = _strained(state, order, element)
+        bending += remainder
     bending[:, : model.freedoms, : model.freedoms] += _turning(model, state)
     stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + np.swapaxes(bending, -1, -2)))
-    inertia, seen = _inertia(state, order, joins, links)
+    inertia, carriers = _inertia(state, order, joins, links)
     force, output, feedthrough = _channels(state, order, rows, joins)
     basis, kept = _free(_locked(state, order, rows, locked), order)
     known = 1.0 if state.converged.all() else np.where(state.converged.ravel(), 1.0, np.nan)[:, None, None]
     imposed = {name: model.hinges.stroke[place] for place, name in enumerate(model.hinges.names) if np.any(model.hinges.stroke[place])}
     rigid = np.zeros((len(state.pose.position), order.size, 6))
     rigid[:, : model.freedoms] = _rigid(state)
-    carried = strain_forces(inertia, seen) if inertia else np.zeros_like(rigid)
+    carried = strain_forces(inertia, carriers) if inertia else np.zeros_like(rigid)
     names = order.names
     return _shaped(
         state,
@@ -222,20 +222,20 @@ def _shaped(state: State, model: LinearModel) -> LinearModel:
 
 def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
     """Every flexure of a group, by name."""
-    law, found, inside = group.law, bent.tangent, _inside(group, bent)
+    law, element, inside = group.law, bent.tangent, _inside(group, bent)
     amplitudes, swayed = inside.amplitudes, inside.swayed
     unit = (law.rigidity / law.length)[:, None, None, None]
     elastic = _transpose(amplitudes) @ (law.form[:, None] @ amplitudes) + _transpose(inside.gap) @ inside.hung
-    rest = _transpose(amplitudes) @ ((found.hessian - law.form[:, None]) @ amplitudes)
-    if found.hung is not None and found.swayed is not None:
-        mixed = _transpose(swayed) @ (found.hung @ amplitudes)
-        rest = rest - mixed - _transpose(mixed) - _transpose(swayed) @ (found.swayed[..., 1, :, :] @ swayed)
+    remainder = _transpose(amplitudes) @ ((element.hessian - law.form[:, None]) @ amplitudes)
+    if element.hung is not None and element.swayed is not None:
+        mixed = _transpose(swayed) @ (element.hung @ amplitudes)
+        remainder = remainder - mixed - _transpose(mixed) - _transpose(swayed) @ (element.swayed[..., 1, :, :] @ swayed)
     turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])
-    rest = unit * rest
-    rest[..., :12, :12] += turned
+    remainder = unit * remainder
+    remainder[..., :12, :12] += turned
     masses = _mass(group, bent, inside)
     return {
-        name: _Linear(unit[place] * elastic[place], 0.5 * (rest[place] + _transpose(rest[place])), masses[place])
+        name: _Linear(unit[place] * elastic[place], 0.5 * (remainder[place] + _transpose(remainder[place])), masses[place])
         for place, name in enumerate(group.names)
     }
 
@@ -266,17 +266,17 @@ class _Inside:
 
 
 def _inside(group: Flexures, bent: Bent) -> _Inside:
-    law, found = group.law, bent.tangent
+    law, element = group.law, bent.tangent
     motion = end_motion(law, bent)
     sway = weight_motion(bent) if bent.weight is not None else np.zeros((*motion.shape[:-2], 3, 12))
-    follow, own = _constrain(law.form[:, None], found.turning, motion[..., 3:, :])
+    follow, own = _constrain(law.form[:, None], element.turning, motion[..., 3:, :])
     amplitudes = np.concatenate([follow, own], axis=-1)
     padding = np.zeros((*motion.shape[:-2], 6, own.shape[-1]))
     ends, swayed = np.concatenate([motion, padding], -1), np.concatenate([sway, padding[..., :3, :]], -1)
-    gap = found.reach @ amplitudes - ends[..., :3, :]
-    if found.swayed is not None:
-        gap = gap + found.swayed[..., 0, :, :] @ swayed
-    return _Inside(amplitudes, gap, np.linalg.solve(found.soft, gap), swayed)
+    gap = element.reach @ amplitudes - ends[..., :3, :]
+    if element.swayed is not None:
+        gap = gap + element.swayed[..., 0, :, :] @ swayed
+    return _Inside(amplitudes, gap, np.linalg.solve(element.soft, gap), swayed)
 
 
 def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array]:
@@ -358,13 +358,13 @@ def flexure_motions(group: Flexures, bent: Bent, moved: Array, inner: Array) -> 
     bent_by, force = inner[:, None, :size, None], inner[:, None, count : count + 3, None]
     place = law.length[:, None, None] * (frame @ (paths @ bent_by + soft[:, 0] @ force))[..., 0]
     turn = (frame @ (turned @ bent_by))[..., 0]
-    found: dict[str, Array] = {}
+    element: dict[str, Array] = {}
     for number, name in enumerate(group.names):
         both = np.concatenate([moved[group.first[number]], moved[group.second[number]]])[:, None]
         carried = transport(arms[number]) @ both[:6]
         points = carried + np.concatenate([place[number], turn[number]], axis=-1)[..., None]
-        found[name] = np.concatenate(_with_ends(bent, number, points, both))[..., 0]
-    return found
+        element[name] = np.concatenate(_with_ends(bent, number, points, both))[..., 0]
+    return element
 
 
 def _pad(matrix: Array, count: int) -> Array:
@@ -416,17 +416,17 @@ def _inertia(
     model, pose = state.model, state.pose
     centre = pose.position[:, model.body(PLATFORM)]
     inertia: dict[str, Contribution] = {}
-    seen: dict[str, Array] = {}
+    carriers: dict[str, Array] = {}
     for name, matrix in model.inertia.items():
         number = model.body(name)
         turn = spatial_rotation(pose.turn[:, number])
         inertia[name] = Contribution(order.body(number), turn @ matrix @ _transpose(turn))
-        seen[name] = transport(pose.position[:, number] - centre)
+        carriers[name] = transport(pose.position[:, number] - centre)
     for name, item in links.items():
         carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
         still = np.zeros((len(centre), item.mass.shape[-1] - 12, 6))
         inertia[name + _SHAKEN] = Contribution(order.link(name, joins[name]), item.mass)
-        seen[name + _SHAKEN] = np.concatenate([*carries, still], axis=-2)
+        carriers[name + _SHAKEN] = np.concatenate([*carries, still], axis=-2)
     for place, name in enumerate(model.hinges.names):
         matrix = mass(model.assembly.links[name].part, model.assembly.links[name].material)
         ends = _hinge_twists(state, place)
@@ -434,15 +434,15 @@ def _inertia(
         both[:, :6, :6], both[:, 6:, 6:] = ends
         carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
         inertia[name + _SHAKEN] = Contribution(both @ order.link(name, joins[name]), matrix)
-        seen[name + _SHAKEN] = both @ np.concatenate(carries, axis=-2)
+        carriers[name + _SHAKEN] = both @ np.concatenate(carries, axis=-2)
     for element in model.elements:
         twists = _port_twists(state, element)
         select = order.ports(element.name, element.bodies)
         inertia[element.name + _SHAKEN] = Contribution(twists @ select, element.inertia)
         carries = np.concatenate([transport(pose.position[:, body] - centre) for body in element.bodies], axis=-2)
         still = np.zeros((len(centre), len(element.squares), 6))
-        seen[element.name + _SHAKEN] = twists @ np.concatenate([carries, still], axis=-2)
-    return inertia, seen
+        carriers[element.name + _SHAKEN] = twists @ np.concatenate([carries, still], axis=-2)
+    return inertia, carriers
 
 
 def _strained(state: State, order: _Coordinates, element: Corotated) -> tuple[Contribution, Array]:
@@ -455,8 +455,8 @@ def _strained(state: State, order: _Coordinates, element: Corotated) -> tuple[Co
     law, operator = np.zeros((strained + modes,) * 2), np.zeros((len(rows), strained + modes, ports + modes))
     law[:strained, :strained], law[strained:, strained:] = element.stiffness, np.diag(element.squares)
     operator[:, :strained, :ports], operator[:, strained:, ports:] = rows, np.eye(modes)
-    rest = select[:ports].T @ (whole - _transpose(rows) @ element.stiffness @ rows) @ select[:ports]
-    return Contribution(operator @ select, law, element.loss), rest
+    remainder = select[:ports].T @ (whole - _transpose(rows) @ element.stiffness @ rows) @ select[:ports]
+    return Contribution(operator @ select, law, element.loss), remainder
 
 
 def _port_twists(state: State, element: Corotated) -> Array:
@@ -475,12 +475,12 @@ def _port_twists(state: State, element: Corotated) -> Array:
 def _hinge_twists(state: State, place: int) -> tuple[Array, Array]:
     """Twists (b, 6, 6) of the ends of a link at its centre, in the frames of each body, by the body twists."""
     hinges, pose = state.model.hinges, state.pose
-    found = []
+    twists = []
     for bodies, arms in ((hinges.first, hinges.arm_first), (hinges.second, hinges.arm_second)):
         turn = pose.turn[:, bodies[place]]
         arm = turn @ arms[place]
-        found.append(_transpose(spatial_rotation(turn @ hinges.turn[place])) @ transport(arm))
-    return found[0], found[1]
+        twists.append(_transpose(spatial_rotation(turn @ hinges.turn[place])) @ transport(arm))
+    return twists[0], twists[1]
 
 
 def _channels(state: State, order: _Coordinates, rows: Array, joins: Mapping[str, tuple[int, int]]) -> tuple[Array, Array, Array]:
@@ -496,24 +496,24 @@ def _channels(state: State, order: _Coordinates, rows: Array, joins: Mapping[str
         force[:, :, start + 6 * place : start + 6 * place + 6] += _transpose(twist)
     for place, name in enumerate(model.hinges.names):
         force += _transpose(rows[place] @ order.link(name, joins[name])) @ model.hinges.thrust[place]
-    told = [*_moved_twists(state, order, twist_places(assembly)), *gauge_rows(assembly, motions)]
-    passed = [np.zeros((row.shape[-2], inputs)) for row in told]
+    output_rows = [*_moved_twists(state, order, twist_places(assembly)), *gauge_rows(assembly, motions)]
+    passed = [np.zeros((row.shape[-2], inputs)) for row in output_rows]
     for name in wrench_owners(assembly):
         place = model.hinges.names.index(name) if name in model.hinges.names else None
         law = np.zeros((6, 6)) if place is None else model.hinges.stiffness[place]
-        told.append(np.zeros((6, order.size)) if place is None else law @ rows[place] @ order.link(name, joins[name]))
+        output_rows.append(np.zeros((6, order.size)) if place is None else law @ rows[place] @ order.link(name, joins[name]))
         passed.append(np.zeros((6, inputs)) if place is None else -law @ model.hinges.stroke[place] - model.hinges.thrust[place])
-    output = np.concatenate([np.broadcast_to(row, (cases, *row.shape[-2:])) for row in told], axis=-2)
+    output = np.concatenate([np.broadcast_to(row, (cases, *row.shape[-2:])) for row in output_rows], axis=-2)
     return force, output, np.concatenate(passed)
 
 
 def _moved_twists(state: State, order: _Coordinates, places: Mapping[str, object]) -> list[Array]:
     """Twist (b, 6, n) of every point in its current position, in stage axes."""
-    found = []
+    twists = []
     for name in places:
         number, arm = state.place(name)
-        found.append(transport(state.pose.turn[:, number] @ (state.model.growth[number] * arm)) @ order.body(number))
-    return found
+        twists.append(transport(state.pose.turn[:, number] @ (state.model.growth[number] * arm)) @ order.body(number))
+    return twists
 
 
 def _at(state: State, order: _Coordinates) -> Callable[[str, Frame], Array]:
@@ -529,8 +529,8 @@ def _at(state: State, order: _Coordinates) -> Callable[[str, Frame], Array]:
 def _locked_rows(model: Nonlinear, rows: Array, order: _Coordinates, joins: Mapping[str, tuple[int, int]]) -> Array:
     """Locked freedoms of links by all coordinates (b, c, n)."""
     names = model.hinges.names
-    found = [rows[link, :, freedom, None] @ order.link(names[link], joins[names[link]]) for link, freedom in model.hinges.locked]
-    return np.concatenate(found, axis=-2) if found else np.zeros((rows.shape[1], 0, order.size))
+    locked_rows = [rows[link, :, freedom, None] @ order.link(names[link], joins[names[link]]) for link, freedom in model.hinges.locked]
+    return np.concatenate(locked_rows, axis=-2) if locked_rows else np.zeros((rows.shape[1], 0, order.size))
 
 
 def _held_rows(state: State, order: _Coordinates, locked: list[int]) -> list[Array]:
@@ -566,9 +566,9 @@ def _untold(model: Nonlinear) -> Iterator[str]:
 
 
 def _viscous(model: Nonlinear) -> dict[str, Array]:
-    found = {name: viscous_damping(model.assembly.links[name].part) for name in model.hinges.names}
-    found |= {each.name: each.damping for each in model.elements}
-    return {name: damping for name, damping in found.items() if damping is not None}
+    dampers = {name: viscous_damping(model.assembly.links[name].part) for name in model.hinges.names}
+    dampers |= {each.name: each.damping for each in model.elements}
+    return {name: damping for name, damping in dampers.items() if damping is not None}
 
 
 def _transpose(matrix: Array) -> Array:

@@ -41,8 +41,8 @@ def centre_lines(state: State) -> dict[str, Line]:
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = centre_lines(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}))
-    >>> found["left"].place.shape
+    >>> result = centre_lines(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}))
+    >>> result["left"].place.shape
     (1, 12, 3)
     """
     return dict(_lines(state))
@@ -73,18 +73,18 @@ def mode_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> Mot
     return Motions(bodies, lines)
 
 
-def critical_motion(found: Critical) -> Motions:
+def critical_motion(critical: Critical) -> Motions:
     """Compute the buckling mode about the last stable state: of bodies, with flexures that follow; or of one flexure between fixed ends."""
-    state = found.state
+    state = critical.state
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     moved = np.zeros((1, len(state.model.bodies) + 1, 6))
-    own = found.link != ""
-    moved[0, :-1] = 0.0 if own else found.shape
+    own = critical.link != ""
+    moved[0, :-1] = 0.0 if own else critical.shape
     lines: dict[str, Array] = {}
     for group, bent in zip(state.model.flexures, whole.bent, strict=True):
         inner = (follow(group, bent, moved) - bent.answer.still)[:, 0]
-        if found.link in group.names:
-            place = group.names.index(found.link)
+        if critical.link in group.names:
+            place = group.names.index(critical.link)
             inner[place] = _softest(bent, place)
         lines |= flexure_motions(group, bent, moved[0], inner)
     return Motions(moved[:, :-1], {name: each[None] for name, each in lines.items()})

@@ -50,8 +50,8 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options
     cases = np.arange(len(loads.inputs))
     most = _STREAM if _all_compiled(model, hold) else _CHUNK
     chunks = [search(model, start.of(part), loads.of(part), hold.of(part), options) for part in _split(cases, most)]
-    found = join(chunks)
-    return _by_steps(model, start, loads, hold, options=options, found=found)
+    solution = join(chunks)
+    return _by_steps(model, start, loads, hold, options=options, solution=solution)
 
 
 def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[Found]:
@@ -60,8 +60,8 @@ def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -
     if several == 1:
         return [equilibrate(*_parts(each), options) for each in tasks]
     chunks = [tasks[first : first + several] for first in range(0, len(tasks), several)]
-    found = [each for chunk in chunks for each in search_designs(chunk, options)]
-    return [_by_steps(*_parts(task), options=options, found=each) for task, each in zip(tasks, found, strict=True)]
+    solutions = [each for chunk in chunks for each in search_designs(chunk, options)]
+    return [_by_steps(*_parts(task), options=options, solution=each) for task, each in zip(tasks, solutions, strict=True)]
 
 
 def _split(cases: Array, most: int) -> list[Array]:
@@ -93,9 +93,9 @@ def join(parts: list[Found]) -> Found:
     return Found(pose, *(np.concatenate([getattr(part, name) for part in parts]) for name in TOLD))
 
 
-def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, options: SolverOptions, found: Found) -> Found:
+def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, options: SolverOptions, solution: Found) -> Found:
     """Load failed cases in steps: twice the step after success, half after failure."""
-    failed = np.flatnonzero(found.status != Status.CONVERGED)
+    failed = np.flatnonzero(solution.status != Status.CONVERGED)
     share, width, pose = np.zeros(len(failed)), np.full(len(failed), 0.5), start.of(failed)
     loads, hold = loads.of(failed), hold.of(failed)
     while (active := np.flatnonzero((share < 1.0) & (width >= 0.5**options.halvings))).size:
@@ -107,21 +107,21 @@ def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, option
         share[active[good]] = aim[good]
         pose = pose.put(active[good], again.pose.of(np.flatnonzero(good)))
         whole = np.flatnonzero(aim == 1.0)
-        found = merge(found, failed[active[whole]], again.of(whole))
-    reached = replace(found, reached=put(found.reached, failed, share))
+        solution = merge(solution, failed[active[whole]], again.of(whole))
+    reached = replace(solution, reached=put(solution.reached, failed, share))
     lost = reached.status[failed] != Status.CONVERGED
     return replace(reached, pose=reached.pose.put(failed[lost], pose.of(np.flatnonzero(lost))))
 
 
-def merge(found: Found, cases: Array, other: Found) -> Found:
+def merge(solution: Found, cases: Array, other: Found) -> Found:
     """Replace some cases of a result."""
-    return Found(found.pose.put(cases, other.pose), *(put(getattr(found, name), cases, getattr(other, name)) for name in TOLD))
+    return Found(solution.pose.put(cases, other.pose), *(put(getattr(solution, name), cases, getattr(other, name)) for name in TOLD))
 
 
 def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options: SolverOptions) -> Found:
     """Iterate all cases together; finished cases leave. In C if a kernel supports all flexures of the stage."""
-    (found,) = search_designs((Task(model, start, loads, hold),), options)
-    return found
+    (solutions,) = search_designs((Task(model, start, loads, hold),), options)
+    return solutions
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,8 +191,8 @@ def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[Found]
             if not going:
                 break
             cases = [searches[place].active for place in going]
-            here = [tasks[place].of(some, poses[place]) for place, some in zip(going, cases, strict=True)]
-            steps = _iterate_compiled(here, options) if compiled else [_Step(*iterate(*_parts(each), options)) for each in here]
+            selected = [tasks[place].of(some, poses[place]) for place, some in zip(going, cases, strict=True)]
+            steps = _iterate_compiled(selected, options) if compiled else [_Step(*iterate(*_parts(each), options)) for each in selected]
             for place, some, step in zip(going, cases, steps, strict=True):
                 poses[place] = poses[place].put(some, step.pose)
                 searches[place].take(some, step, options)
@@ -204,15 +204,15 @@ def _parts(task: Task) -> tuple[Nonlinear, Pose, Loads, Hold]:
 
 
 def _search_compiled(task: Task, options: SolverOptions) -> Found:
-    found = iterate_compiled(task.model, task.start, task.loads, options, None)
-    return Found(found.pose, found.status, found.count, found.lack, 1.0 * (found.status == Status.CONVERGED))
+    solutions = iterate_compiled(task.model, task.start, task.loads, options, None)
+    return Found(solutions.pose, solutions.status, solutions.count, solutions.lack, 1.0 * (solutions.status == Status.CONVERGED))
 
 
 def _iterate_compiled(tasks: list[Task], options: SolverOptions) -> list[_Step]:
     """Iterate as `iterate`, with flexures, loads and solution in C."""
     once = replace(options, iterations=1)
-    found = [iterate_compiled(each.model, each.start, each.loads, once, rest) for each, rest in zip(tasks, _rests(tasks), strict=True)]
-    return [_Step(each.pose, each.moved, each.lack) for each in found]
+    results = [iterate_compiled(each.model, each.start, each.loads, once, terms) for each, terms in zip(tasks, _rests(tasks), strict=True)]
+    return [_Step(each.pose, each.moved, each.lack) for each in results]
 
 
 def _rests(tasks: list[Task]) -> list[Rest | None]:
@@ -270,9 +270,9 @@ def motion(model: Nonlinear, step: Array, length: float) -> Array:
 
 def lack(model: Nonlinear, system: System) -> Array:
     """Return the largest flexure residual (b,): gaps, and forces on amplitudes over their stiffness; also of locked freedoms."""
-    found = [np.zeros(len(system.residual))]
+    largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
         stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]
-        found += [np.max(np.abs(bent.gap), axis=(0, 2)), np.max(np.max(np.abs(bent.tangent.gradient), axis=-1) / stiff, axis=0)]
+        largest += [np.max(np.abs(bent.gap), axis=(0, 2)), np.max(np.max(np.abs(bent.tangent.gradient), axis=-1) / stiff, axis=0)]
     held = system.residual[:, model.freedoms :]
-    return np.max(np.stack([*found, np.max(np.abs(held), axis=1, initial=0.0)]), axis=0)
+    return np.max(np.stack([*largest, np.max(np.abs(held), axis=1, initial=0.0)]), axis=0)

@@ -121,9 +121,9 @@ class Nonlinear:
     def dead(self, loads: Loads) -> Array:
         """Return the constant-direction wrenches (b, d, 6) at the points."""
         wrench = np.zeros((len(loads.inputs), len(self.places.body), 6))
-        given = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
-        count = len(given) // 6
-        wrench[:, :count] = loads.inputs[:, given].reshape(-1, count, 6)
+        columns = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
+        count = len(columns) // 6
+        wrench[:, :count] = loads.inputs[:, columns].reshape(-1, count, 6)
         wrench[..., :3] += loads.constant[:, None, None] * self.stated + self.masses[:, None] * loads.gravity[:, None]
         return wrench
 
@@ -173,7 +173,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, drawn)
     centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
     places, stated, masses = _places(mechanism, assembly, number, reference, centred)
-    carried = {name: moving_inertia(mechanism, placed) for name, placed in assembly.bodies.items()}
+    carried = {name: moving_inertia(mechanism, assembly_links) for name, assembly_links in assembly.bodies.items()}
     return Nonlinear(
         assembly=assembly,
         bodies=bodies,
@@ -213,10 +213,10 @@ def _growth(mechanism: Mechanism, assembly: Assembly, bodies: tuple[str, ...], c
     warmth = {name: change + stated.get(name, stated.get(EVERYWHERE, 0.0)) for name in (*bodies, GROUND)}
     if not any(warmth.values()):
         return _Growth(np.ones(len(bodies) + 1), {})
-    found = expansion(mechanism, ground)
-    mean = {name: 0.5 * sum(warmth[body] for body in assembly.links[name].joins) for name in found.parts}
-    parts = {name: 1.0 + mean[name] * float(each) for name, (each, _) in found.parts.items()}
-    return _Growth(np.array([1.0 + warmth[name] * float(found.bodies[name]) for name in (*bodies, GROUND)]), parts)
+    growth = expansion(mechanism, ground)
+    mean = {name: 0.5 * sum(warmth[body] for body in assembly.links[name].joins) for name in growth.parts}
+    parts = {name: 1.0 + mean[name] * float(each) for name, (each, _) in growth.parts.items()}
+    return _Growth(np.array([1.0 + warmth[name] * float(growth.bodies[name]) for name in (*bodies, GROUND)]), parts)
 
 
 def _grow(law: FlexureLaw, ratio: float) -> FlexureLaw:
@@ -286,7 +286,7 @@ def _hinges(mechanism: Mechanism, assembly: Assembly, links: Mapping[str, Placed
 
 def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: Array) -> Corotated:
     """A superelement by its matrices, with port motions in stage axes."""
-    found = condense(placed.part, f"parts.{placed.link.part}")
+    condensed = condense(placed.part, f"parts.{placed.link.part}")
     bodies = np.array([number[port.body] for port in placed.ports.values()], dtype=int)
     place = np.stack([_one(port.frame.position, placed.name) for port in placed.ports.values()])
     turns = np.stack([port.frame.rotation for port in placed.ports.values()])
@@ -300,7 +300,7 @@ def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: A
             relative[rows, own] = into[own, own]
             relative[rows, :6] = -into[own, own] @ transport(place[port] - place[0])
     whole = np.tile(np.eye(6)[:, :3], (count, 1))
-    inertia, loss = found.inertia[: 6 * count, : 6 * count], placed.part.loss_factor
+    inertia, loss = condensed.inertia[: 6 * count, : 6 * count], placed.part.loss_factor
     return Corotated(
         name=placed.name,
         ports=tuple(placed.ports),
@@ -309,13 +309,13 @@ def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: A
         axes=turns,
         place=place,
         relative=relative,
-        stiffness=found.stiffness,
-        squares=found.squares,
-        inertia=found.inertia,
-        damping=found.damping,
+        stiffness=condensed.stiffness,
+        squares=condensed.squares,
+        inertia=condensed.inertia,
+        damping=condensed.damping,
         loss=0.0 if loss is None else float(loss),
-        mass=found.mass,
-        centre=placed.frame.point(found.centre),
+        mass=condensed.mass,
+        centre=placed.frame.point(condensed.centre),
         share=into.T @ inertia @ into @ whole,
     )
 
@@ -350,13 +350,13 @@ def _places(
 def _halves(link: PlacedLink, number: Mapping[str, int]) -> list[tuple[int, Array, Array, float]]:
     """Mass of a link on each of its bodies, and its position."""
     matrix = mass(link.part, link.material)
-    found = []
+    halves = []
     for end, body in enumerate(link.joins):
         share = matrix[6 * end : 6 * end + 6, :6] + matrix[6 * end : 6 * end + 6, 6:12]
         if share[0, 0] > 0.0:
             along = share[5, 1] / share[1, 1]
-            found.append((number[body], link.frame.position + along * link.frame.rotation[:, 0], np.zeros(3), float(share[0, 0])))
-    return found
+            halves.append((number[body], link.frame.position + along * link.frame.rotation[:, 0], np.zeros(3), float(share[0, 0])))
+    return halves
 
 
 def extent(model: Nonlinear) -> dict[str, float]:

@@ -77,9 +77,9 @@ class Blocks:
             columns.append(np.broadcast_to(place[second[:, None, None] + np.arange(wide)], shape).ravel())
             values.append(np.moveaxis(blocks, 1, 0).reshape(self._cases, -1))
         row, column, value = np.concatenate(rows), np.concatenate(columns), np.concatenate(values, axis=1)
-        seen = (row >= 0) & (column >= 0)
+        inside = (row >= 0) & (column >= 0)
         size = len(kept)
-        return tuple(scipy.sparse.coo_array((each[seen], (row[seen], column[seen])), (size, size)).tocsc() for each in value)
+        return tuple(scipy.sparse.coo_array((each[inside], (row[inside], column[inside])), (size, size)).tocsc() for each in value)
 
 
 def empty_sum(cases: int, size: int) -> Sum:

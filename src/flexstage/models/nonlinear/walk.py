@@ -44,14 +44,14 @@ def tree(model: Nonlinear) -> tuple[Step, ...]:
         for link, (one, other) in enumerate(zip(group.first.tolist(), group.second.tolist(), strict=True)):
             joins.setdefault(one, []).append((other, Step(number, link, other, start=True)))
             joins.setdefault(other, []).append((one, Step(number, link, one, start=False)))
-    found, waiting = [], deque([ground])
+    steps, waiting = [], deque([ground])
     while waiting:
         for other, step in joins.get(waiting.popleft(), ()):
             if other not in reached:
                 reached.add(other)
                 waiting.append(other)
-                found.append(step)
-    return tuple(found)
+                steps.append(step)
+    return tuple(steps)
 
 
 def walked(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:

@@ -22,28 +22,28 @@ class Answer:
     moved: Array
 
 
-def system(found: Tangent) -> Array:
+def system(tangent: Tangent) -> Array:
     """Build the matrix (..., q + 6, q + 6) of amplitudes, end force and end moment; symmetric if H is."""
-    size = found.hessian.shape[-1]
-    result = np.zeros((*found.hessian.shape[:-2], size + 6, size + 6))
-    result[..., :size, :size] = found.hessian
-    rows = np.concatenate([found.reach, found.turning], axis=-2)
+    size = tangent.hessian.shape[-1]
+    result = np.zeros((*tangent.hessian.shape[:-2], size + 6, size + 6))
+    result[..., :size, :size] = tangent.hessian
+    rows = np.concatenate([tangent.reach, tangent.turning], axis=-2)
     result[..., :size, size:] = -np.swapaxes(rows, -1, -2)
     result[..., size:, :size] = rows
-    result[..., size : size + 3, size : size + 3] = found.soft
+    result[..., size : size + 3, size : size + 3] = tangent.soft
     return result
 
 
-def condense(found: Tangent, gap: Array) -> Answer:
+def condense(tangent: Tangent, gap: Array) -> Answer:
     """Solve for the motions of the end and for the residual; `gap` (..., 6) is the distance of the end from its body. NaN if singular."""
-    matrix = system(found)
-    size = found.hessian.shape[-1]
-    right = np.zeros((*matrix.shape[:-1], 7 if found.hung is None else 10))
-    right[..., :size, 0], right[..., size:, 0] = -found.gradient, -gap
+    matrix = system(tangent)
+    size = tangent.hessian.shape[-1]
+    right = np.zeros((*matrix.shape[:-1], 7 if tangent.hung is None else 10))
+    right[..., :size, 0], right[..., size:, 0] = -tangent.gradient, -gap
     right[..., size:, 1:7] = np.eye(6)
-    if found.hung is not None and found.swayed is not None:
-        right[..., :size, 7:] = np.swapaxes(found.hung, -1, -2)
-        right[..., size : size + 3, 7:] = -found.swayed[..., 0, :, :]
+    if tangent.hung is not None and tangent.swayed is not None:
+        right[..., :size, 7:] = np.swapaxes(tangent.hung, -1, -2)
+        right[..., size : size + 3, 7:] = -tangent.swayed[..., 0, :, :]
     answer = solve(matrix, right)
     return Answer(answer[..., 0], answer[..., 1:])
 

@@ -96,17 +96,17 @@ def moved(element: Corotated, position: Array, turn: Array) -> Moved:
 
 def resist(element: Corotated, position: Array, turn: Array, gravity: Array) -> Array:
     """Compute the internal forces (..., 6 p) on the port bodies, less the weight under `gravity` (..., 3)."""
-    found = moved(element, position, turn)
-    strain = (element.relative @ found.motion[..., None])[..., 0]
+    ports = moved(element, position, turn)
+    strain = (element.relative @ ports.motion[..., None])[..., 0]
     force = (element.relative.T @ (element.stiffness @ strain[..., None]))[..., 0]
-    pulled = (_transpose(found.frame) @ gravity[..., None])[..., 0]
+    pulled = (_transpose(ports.frame) @ gravity[..., None])[..., 0]
     force = force - (element.share @ pulled[..., None])[..., 0]
-    hanging = element.mass * (element.centre - np.mean(element.place, axis=0)) + (found.motion @ element.share)
-    lever = (found.frame @ hanging[..., None])[..., 0]
+    hanging = element.mass * (element.centre - np.mean(element.place, axis=0)) + (ports.motion @ element.share)
+    lever = (ports.frame @ hanging[..., None])[..., 0]
     weight = element.mass * gravity
-    own = (_transpose(found.rows) @ force[..., None])[..., 0]
+    own = (_transpose(ports.rows) @ force[..., None])[..., 0]
     return (
-        own - (_transpose(found.drift) @ weight[..., None])[..., 0] - (_transpose(found.turning) @ cross(lever, gravity)[..., None])[..., 0]
+        own - (_transpose(ports.drift) @ weight[..., None])[..., 0] - (_transpose(ports.turning) @ cross(lever, gravity)[..., None])[..., 0]
     )
 
 
@@ -120,11 +120,11 @@ def stiffen_ports(element: Corotated, position: Array, turn: Array, gravity: Arr
 
 def _mean(turn: Array) -> Array:
     """The mean (..., 3, 3) of rotations (..., p, 3, 3) by H. Karcher's definition, iterated from the first."""
-    found = turn[..., 0, :, :]
+    mean = turn[..., 0, :, :]
     for _ in range(_TURNS):
-        away = np.mean(logarithm(_transpose(found)[..., None, :, :] @ turn), axis=-2)
-        found = found @ exponential(away)
-    return found
+        away = np.mean(logarithm(_transpose(mean)[..., None, :, :] @ turn), axis=-2)
+        mean = mean @ exponential(away)
+    return mean
 
 
 def _transpose(matrix: Array) -> Array:

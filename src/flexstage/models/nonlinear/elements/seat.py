@@ -45,10 +45,10 @@ def seat(model: Nonlinear, links: Collection[str], place: Array) -> Nonlinear:
 def _moved(group: _Links, ground: int, links: Collection[str], place: Array) -> _Links:
     """Links whose ground ends are on the seat if they are named, else on the ground behind it."""
     mine = np.array([name in links for name in group.names], dtype=bool)
-    found: dict[str, Array] = {}
+    links_on_seat: dict[str, Array] = {}
     for end, arm in (("first", "arm_first"), ("second", "arm_second")):
         bodies = getattr(group, end)
         seated = mine & (bodies == ground)
-        found[end] = np.where((bodies == ground) & ~seated, ground + 1, bodies)
-        found[arm] = getattr(group, arm) - seated[:, None] * place
-    return replace(group, **found)
+        links_on_seat[end] = np.where((bodies == ground) & ~seated, ground + 1, bodies)
+        links_on_seat[arm] = getattr(group, arm) - seated[:, None] * place
+    return replace(group, **links_on_seat)

@@ -57,8 +57,8 @@ def strains(state: State) -> Strains:
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = strains(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}, weight=0.0))
-    >>> found.names[:2], bool(found.largest[0] > 1e-5)
+    >>> result = strains(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}, weight=0.0))
+    >>> result.names[:2], bool(result.largest[0] > 1e-5)
     (('left', 'right'), True)
     """
     names: list[str] = []
@@ -78,8 +78,8 @@ def strains(state: State) -> Strains:
         curved = np.max(np.abs(_bent(lies)[..., 2]), axis=-1) / law.length[:, None]
         curving += list(2.0 * law.half[:, None, 1] ** 2 / law.half[:, None, 0] * curved)
     known = np.where(state.converged, 1.0, np.nan)[..., None]
-    told = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
-    return Strains(tuple(names), *told, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
+    results = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
+    return Strains(tuple(names), *results, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
 
 
 def law_reserve(state: State) -> tuple[float, str]:
@@ -122,8 +122,8 @@ def _bent(lies: Shape) -> Array:
 
 
 def _materials(state: State, group: Flexures) -> list[Material]:
-    found = [state.model.assembly.links[name].material for name in group.names]
-    return [each for each in found if each is not None]
+    materials = [state.model.assembly.links[name].material for name in group.names]
+    return [each for each in materials if each is not None]
 
 
 def _limits(materials: list[Material]) -> Array:

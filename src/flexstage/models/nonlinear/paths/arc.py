@@ -157,13 +157,13 @@ def misfit(scale: Array, before: Point | None, last: Point, after: Point) -> flo
 
 def _unforeseen(before: Point | None, last: Point, after: Point, name: str, size: float) -> float:
     """Error of the prediction from the last two points over the bound; NaN at the start of a branch."""
-    there, here = getattr(last, name), getattr(after, name)
-    expected = there
+    previous, current = getattr(last, name), getattr(after, name)
+    expected = previous
     if before is not None:
-        expected += (there - getattr(before, name)) * np.linalg.norm(after.step) / np.linalg.norm(last.step)
-    elif not there:
+        expected += (previous - getattr(before, name)) * np.linalg.norm(after.step) / np.linalg.norm(last.step)
+    elif not previous:
         return np.nan
-    return abs(here - expected) / (_MISFIT * max(abs(expected - there), abs(there), _NONE * size))
+    return abs(current - expected) / (_MISFIT * max(abs(expected - previous), abs(previous), _NONE * size))
 
 
 def _ahead(before: Point | None, last: Point) -> float:
@@ -237,12 +237,12 @@ def critical_point(course: Course, pose: Pose, factor: float, into: Array | None
     return replace(point, along=along, slope=0.0, steepest=np.inf, stiffness=np.nan, reference=None)
 
 
-def point_at(course: Course, found: Found, factor: float, *, step: Array, start: Point | None = None) -> Point:
+def point_at(course: Course, solution: Found, factor: float, *, step: Array, start: Point | None = None) -> Point:
     """Compute tangent, number of unstable motions and lowest stiffness at an equilibrium, given the previous point."""
     model = course.model
     with np.errstate(all="ignore"):
-        system = assemble(model, found.pose, *course.at(factor))
-        rate = _solved(system, load_rate(course, found.pose, factor, system))
+        system = assemble(model, solution.pose, *course.at(factor))
+        rate = _solved(system, load_rate(course, solution.pose, factor, system))
         slope = np.copysign(1.0 / np.linalg.norm(course.scale * rate), 1.0 if start is None else step @ (course.scale * rate))
         along = slope * rate
     motions, stiffness = int(count_descents(model, system, course.kept)[0]), np.nan
@@ -253,25 +253,25 @@ def point_at(course: Course, found: Found, factor: float, *, step: Array, start:
         stiffness = (-1.0 if motions else 1.0) * (abs(whole / reference.stage * own / reference.flexure) if reference else 1.0)
         reference = reference or Reference(scale, whole, own)
     steepest = max(abs(float(slope)), 0.0 if start is None else start.steepest)
-    return Point(found, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
+    return Point(solution, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
 
 
-def rescue(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: SolverOptions) -> Found:
+def rescue(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, options: SolverOptions) -> Found:
     """Continue the cases with a partial load by arc length to the whole load or to the limit point."""
-    partly = np.flatnonzero((found.status != Status.CONVERGED) & (found.reached > 0.0))
+    partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])
-        after = _rescued(model, loads.of(one), hold.of(one), found.of(one), options)
-        told = (put(getattr(found, name), one, getattr(after, name)) for name in TOLD)
-        found = Found(found.pose.put(one, after.pose), *told)
-    return found
+        after = _rescued(model, loads.of(one), hold.of(one), solution.of(one), options)
+        fields = (put(getattr(solution, name), one, getattr(after, name)) for name in TOLD)
+        solution = Found(solution.pose.put(one, after.pose), *fields)
+    return solution
 
 
-def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: SolverOptions) -> Found:
+def _rescued(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, options: SolverOptions) -> Found:
     """One case: the load is continued from the fraction `reached`."""
     rows = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
     course = Course(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, options, rows)
-    last = first_point(course, found.pose, float(found.reached[0]))
+    last = first_point(course, solution.pose, float(solution.reached[0]))
     stride = _STRIDE
     for _ in range(options.arcs):
         after = step_along(course, last, stride * _moved(course, last.found.pose))
@@ -281,13 +281,13 @@ def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: 
                 break
         elif after.factor >= 1.0:
             whole = search(model, after.found.pose, loads, hold, options)
-            return whole if whole.status[0] == Status.CONVERGED else found
+            return whole if whole.status[0] == Status.CONVERGED else solution
         elif after.factor < last.factor and not options.past:
             break
         else:
             last, stride = after, _STRIDE * (2.5 if options.past else 1.0)
-            found = replace(found, pose=after.found.pose, reached=np.maximum(found.reached, after.factor))
-    return found
+            solution = replace(solution, pose=after.found.pose, reached=np.maximum(solution.reached, after.factor))
+    return solution
 
 
 def _moved(course: Course, pose: Pose) -> float:

@@ -145,10 +145,10 @@ def require_continuation(start: State, end: State) -> None:
     another equilibrium. An unstable state, or one whose path starts unstable, is accepted.
     """
     one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
-    found = continued(one, other)
-    if found.status[0] != Status.CONVERGED:
-        raise refuse("stage", why_without(int(found.status[0]), float(found.reached[0])), LESS)
-    if found.pose is not end.pose:
+    continuation = continued(one, other)
+    if continuation.status[0] != Status.CONVERGED:
+        raise refuse("stage", why_without(int(continuation.status[0]), float(continuation.reached[0])), LESS)
+    if continuation.pose is not end.pose:
         raise refuse("stage", "the equilibrium under its loads is not the continuation of the unloaded stage", LESS)
 
 

@@ -61,13 +61,13 @@ def follow_to_event(
         for point in itertools.islice(march(course, last, length), _POINTS):
             length = 0.1 * float(np.linalg.norm(point.step))
             if point.motions:
-                found = _first_event(course, last, point, bent, tolerance)
-                if found is None:
+                event = _first_event(course, last, point, bent, tolerance)
+                if event is None:
                     break  # the step changed to another path
-                _require_lawful(course, found.event or point, last, bent, reserve)
-                if found.factor <= most:
-                    return found
-                return replace(found, last=_zero(course, last, found.event or point, lambda each: each.factor - most, 1e-6) or last)
+                _require_lawful(course, event.event or point, last, bent, reserve)
+                if event.factor <= most:
+                    return event
+                return replace(event, last=_zero(course, last, event.event or point, lambda each: each.factor - most, 1e-6) or last)
             _require_lawful(course, point, last, bent, reserve)
             if bent is None and _excess(point) < 0.0:
                 bent = _zero(course, last, point, _excess, 1e-4) or point
@@ -131,8 +131,8 @@ def continued(start: Task, end: Task) -> Found:
         return lost(Status.CRITICAL, followed.factor)
     if after.motions and followed.bend:
         return whole
-    found = search(model, followed.last.found.pose, end.loads, hold, USUAL)
-    return whole if found.status[0] == Status.CONVERGED and apart(model, found.pose, end.start) < _SAME else found
+    solution = search(model, followed.last.found.pose, end.loads, hold, USUAL)
+    return whole if solution.status[0] == Status.CONVERGED and apart(model, solution.pose, end.start) < _SAME else solution
 
 
 def apart(model: Nonlinear, one: Pose, other: Pose) -> float:

@@ -65,9 +65,9 @@ def stiffness_scale(model: Nonlinear, whole: System) -> Array:
     return np.maximum(np.sqrt(np.maximum(diagonal, 0.0)), 1e-6 * typical * size)
 
 
-def indefinite(found: Tangent) -> Array:
+def indefinite(tangent: Tangent) -> Array:
     """Build the symmetric form of a flexure's system: the rows of its end with reversed signs."""
-    matrix = system(found)
+    matrix = system(tangent)
     matrix[..., matrix.shape[-1] - 6 :, :] *= -1.0
     return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
 

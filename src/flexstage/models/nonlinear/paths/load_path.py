@@ -89,49 +89,49 @@ def load_path(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = load_path(nonlinear(parallelogram()), "platform.x", np.linspace(-1e-4, 1e-4, 3), weight=0.0)
-    >>> found.state.reactions[:, 0].round(0).tolist(), found.motions.tolist()
+    >>> result = load_path(nonlinear(parallelogram()), "platform.x", np.linspace(-1e-4, 1e-4, 3), weight=0.0)
+    >>> result.state.reactions[:, 0].round(0).tolist(), result.motions.tolist()
     ([-1939.0, 0.0, 1939.0], [0, 0, 0])
     """
     values = np.asarray(values, dtype=float)
-    rest = equilibrium(model, loads, hold=hold, weight=weight)
-    found = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, options=options)
-    begin, start = begin_along(rest, drive, loads or {}, hold or {}, weight)
-    found = continue_along(begin, found, values - start)
-    return LoadPath(drive, values, found, unstable_motions(found), tuple(hold or {}))
+    unloaded = equilibrium(model, loads, hold=hold, weight=weight)
+    states = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, options=options)
+    begin, start = begin_along(unloaded, drive, loads or {}, hold or {}, weight)
+    states = continue_along(begin, states, values - start)
+    return LoadPath(drive, values, states, unstable_motions(states), tuple(hold or {}))
 
 
-def begin_along(rest: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
+def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
     """Compute the equilibrium with the drive coordinate fixed, and the value of the drive."""
-    driven = drive in {channel.name for channel in rest.model.inputs}
-    if not bool(rest.converged):
-        return rest, 0.0
+    driven = drive in {channel.name for channel in unloaded.model.inputs}
+    if not bool(unloaded.converged):
+        return unloaded, 0.0
     owner, _, component = drive.rpartition(".")
-    start = 0.0 if driven else float(rest.twist(owner)[COMPONENTS.index(component)])
+    start = 0.0 if driven else float(unloaded.twist(owner)[COMPONENTS.index(component)])
     held = {**({} if driven else {drive: start}), **hold}
-    return equilibrium(rest.model, loads, hold=held, weight=weight, start=rest), start
+    return equilibrium(unloaded.model, loads, hold=held, weight=weight, start=unloaded), start
 
 
-def continue_along(begin: State, found: State, away: Array) -> State:
+def continue_along(begin: State, states: State, away: Array) -> State:
     """Compute states (k,) of a drive at distances `away` (k,) from its start; stable ones that do not continue one another are NaN."""
     if not bool(begin.converged):
-        return replace(found, status=np.where(found.converged, begin.status, found.status), reached=0.0 * found.reached)
-    pose, status, reached = found.pose, np.array(found.status), np.array(found.reached)
-    stable = unstable_motions(found) == 0
+        return replace(states, status=np.where(states.converged, begin.status, states.status), reached=0.0 * states.reached)
+    pose, status, reached = states.pose, np.array(states.status), np.array(states.reached)
+    stable = unstable_motions(states) == 0
     last = dict.fromkeys((False, True), (Task(begin.model, begin.pose, begin.loads, begin.hold), 0.0))
     for case in np.argsort(np.abs(away)):
         if not stable[case]:
             continue
-        one, there, side = np.array([case]), float(away[case]), bool(away[case] > 0.0)
-        before, here = last[side]
-        end = Task(found.model, pose.of(one), found.loads.of(one), found.hold.of(one))
+        one, distance, side = np.array([case]), float(away[case]), bool(away[case] > 0.0)
+        before, covered = last[side]
+        end = Task(states.model, pose.of(one), states.loads.of(one), states.hold.of(one))
         after = continued(before, end)
         status[case], pose = after.status[0], pose.put(one, after.pose)
         if status[case] == Status.CONVERGED:
-            last[side] = (replace(end, start=after.pose), there)
+            last[side] = (replace(end, start=after.pose), distance)
         else:
-            reached[case] = (here + float(after.reached[0]) * (there - here)) / there
-    return replace(found, pose=pose, status=status, reached=reached)
+            reached[case] = (covered + float(after.reached[0]) * (distance - covered)) / distance
+    return replace(states, pose=pose, status=status, reached=reached)
 
 
 def equilibria_along(
@@ -151,21 +151,21 @@ def equilibria_along(
     >>> equilibria_along(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4]), weight=0.0).reactions[:, 0].round(0).tolist()
     [0.0, 1939.0]
     """
-    values, rest, locked, options = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(options, arcs=0)
+    values, others, locked, options = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(options, arcs=0)
     known = {channel.name for channel in model.inputs}
 
     def at(some: Array, start: State | None) -> State:
         if drive in known:
-            driven = {**rest, drive: some + rest.get(drive, 0.0)}
+            driven = {**others, drive: some + others.get(drive, 0.0)}
             return equilibrium(model, driven, hold=locked, weight=weight, start=start, options=options)
-        return equilibrium(model, rest, hold={drive: some, **locked}, weight=weight, start=start, options=options)
+        return equilibrium(model, others, hold={drive: some, **locked}, weight=weight, start=start, options=options)
 
-    found = at(values, None)
-    while 0 < (count := int(np.sum(found.converged))) < values.size:
-        found = at(values, _neighbour(found))
-        if int(np.sum(found.converged)) <= count:
+    states = at(values, None)
+    while 0 < (count := int(np.sum(states.converged))) < values.size:
+        states = at(values, _neighbour(states))
+        if int(np.sum(states.converged)) <= count:
             break
-    return found
+    return states
 
 
 def equilibria_of_designs(
@@ -181,8 +181,8 @@ def equilibria_of_designs(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> (found,) = equilibria_of_designs([nonlinear(parallelogram())], "platform.x", [np.array([1e-4])], loads={}, hold=[{}], weight=0.0)
-    >>> found.reactions[:, 0].round(0).tolist()
+    >>> (result,) = equilibria_of_designs([nonlinear(parallelogram())], "platform.x", [np.array([1e-4])], loads={}, hold=[{}], weight=0.0)
+    >>> result.reactions[:, 0].round(0).tolist()
     [1939.0]
     """
     alone = [
@@ -192,16 +192,16 @@ def equilibria_of_designs(
     if drive in {channel.name for channel in models[0].inputs}:
         return [each() for each in alone]
     held = [{drive: some, **locked} for some, locked in zip(values, hold, strict=True)]
-    found = equilibria(models, loads, hold=held, weight=weight, options=replace(USUAL, arcs=0))
-    return [one if one.converged.all() else again() for one, again in zip(found, alone, strict=True)]
+    states = equilibria(models, loads, hold=held, weight=weight, options=replace(USUAL, arcs=0))
+    return [one if one.converged.all() else again() for one, again in zip(states, alone, strict=True)]
 
 
-def _neighbour(found: State) -> State:
+def _neighbour(states: State) -> State:
     """Restart every failed case from the nearest converged one."""
-    places, good = np.arange(len(found.status)), np.flatnonzero(found.converged)
+    places, good = np.arange(len(states.status)), np.flatnonzero(states.converged)
     nearest = good[np.argmin(np.abs(places[:, None] - good), axis=1)]
-    chosen = np.where(found.converged, places, nearest)
-    return replace(found, pose=found.pose.of(chosen))
+    chosen = np.where(states.converged, places, nearest)
+    return replace(states, pose=states.pose.of(chosen))
 
 
 @check_arguments
@@ -225,8 +225,8 @@ def continuation(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = continuation(nonlinear(parallelogram()), {"platform.fx": 100.0}, points=2, weight=0.0)
-    >>> found.values.size, bool(found.state.converged.all())
+    >>> result = continuation(nonlinear(parallelogram()), {"platform.fx": 100.0}, points=2, weight=0.0)
+    >>> result.values.size, bool(result.state.converged.all())
     (3, True)
     """
     start = equilibrium(model, rest or {}, hold=hold, weight=weight)
@@ -262,20 +262,20 @@ def post_buckling_path(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = post_buckling_path(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
-    >>> found.values.round(3).tolist()
+    >>> result = post_buckling_path(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
+    >>> result.values.round(3).tolist()
     [11.063, 11.065, 11.069]
     """
-    given = critical_load(model, load, rest=rest, weight=weight)
-    if given.kind is Kind.LIMIT:
+    critical = critical_load(model, load, rest=rest, weight=weight)
+    if critical.kind is Kind.LIMIT:
         raise refuse(
-            "load", f"limit point without a branch at {given.factor:.6g} times the load", "Follow the load with fs.continuation"
+            "load", f"limit point without a branch at {critical.factor:.6g} times the load", "Follow the load with fs.continuation"
         )
-    return beyond(given, load, side=side, step=step, points=points, options=options)
+    return beyond(critical, load, side=side, step=step, points=points, options=options)
 
 
 def beyond(
-    given: Critical,
+    critical: Critical,
     load: Mapping[str, float],
     *,
     side: float = 1.0,
@@ -297,31 +297,33 @@ def beyond(
     >>> beyond(given, load, side=-1.0, points=2).values.round(3).tolist()
     [11.063, 11.065, 11.069]
     """
-    start, what = given.state, f"at {given.factor:.6g} times the load"
-    if given.kind is not Kind.BIFURCATION and side < 0.0:
-        raise refuse("side", f"{what} the path continues to one side only: a {given.kind.value}", "Use the other side")
-    if given.link and given.kind is Kind.BIFURCATION:
-        raise refuse(given.link, f"{what} the flexure buckles between fixed ends", "Model it as two parts with a light body between them")
-    course, into = course_of(start, load, given.factor, options), None
-    if given.kind is Kind.BIFURCATION:
+    start, what = critical.state, f"at {critical.factor:.6g} times the load"
+    if critical.kind is not Kind.BIFURCATION and side < 0.0:
+        raise refuse("side", f"{what} the path continues to one side only: a {critical.kind.value}", "Use the other side")
+    if critical.link and critical.kind is Kind.BIFURCATION:
+        raise refuse(
+            critical.link, f"{what} the flexure buckles between fixed ends", "Model it as two parts with a light body between them"
+        )
+    course, into = course_of(start, load, critical.factor, options), None
+    if critical.kind is Kind.BIFURCATION:
         others = np.zeros(len(course.scale) - start.model.freedoms)
-        into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
-    begin = critical_point(course, start.pose, given.factor, into)
-    found = [begin, *follow_course(course, begin, step, points)]
-    if len(found) == 1:
+        into = np.concatenate([np.sign(side) * np.ravel(critical.shape), others])
+    begin = critical_point(course, start.pose, critical.factor, into)
+    path = [begin, *follow_course(course, begin, step, points)]
+    if len(path) == 1:
         raise refuse("load", f"no equilibrium beyond the critical point {what}", "Use a smaller step")
-    return _along(course, found, start.held)
+    return _along(course, path, start.held)
 
 
-def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> LoadPath:
-    factors, count = np.array([each.factor for each in found]), len(found)
+def _along(course: Course, path: list[Point], held: tuple[str, ...]) -> LoadPath:
+    factors, count = np.array([each.factor for each in path]), len(path)
     loads, hold = course.at(0.0)
     inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(course.gain, name) for name in ("inputs", "gravity"))
     along = Loads(inputs, gravity, loads.constant + factors * course.gain.constant)
-    whole = join([each.found for each in found])
+    whole = join([each.found for each in path])
     states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
-    motions = np.array([each.motions for each in found])
-    return LoadPath("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(found)]))
+    motions = np.array([each.motions for each in path])
+    return LoadPath("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(path)]))
 
 
 def _turn(one: Point, other: Point) -> float:
