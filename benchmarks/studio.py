@@ -33,7 +33,7 @@ import psutil
 from websockets.asyncio.client import connect
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.wire import decode_said, encode
+from flexstage.apps.studio.wire import decode, encode
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dumps
 
@@ -52,7 +52,7 @@ class Page:
         while True:
             text = await self.connection.recv()
             self.bytes += len(text)
-            message = decode_said(text)
+            message = decode(text, say.Said)
             self.told[type(message)] = message
             if true(message):
                 return message

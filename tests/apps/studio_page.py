@@ -1,18 +1,25 @@
 """A page of the studio without a browser: it asks, and keeps what it is told."""
 
 import asyncio
+import base64
 import contextlib
 import threading
 from contextlib import contextmanager
 
+import numpy as np
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.server import Studio
-from flexstage.apps.studio.wire import decode_said, encode
+from flexstage.apps.studio.wire import decode, encode
 
 PATIENCE = 120.0
+
+
+def array(value: say.Floats) -> np.ndarray:
+    """The array that came over the wire."""
+    return np.frombuffer(base64.b64decode(value.data), dtype="<f8").reshape(value.shape)
 
 
 class Page:
@@ -29,7 +36,7 @@ class Page:
     async def _listen(self):
         async for text in _texts(self.connection):
             self.bytes += len(text)
-            message = decode_said(text)
+            message = decode(text, say.Said)
             kind = type(message)
             self.counts[kind] = self.counts.get(kind, 0) + 1
             if hasattr(message, "to"):

@@ -37,7 +37,7 @@ from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.results import all_figures, drawn, figures, reach
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.travel import travelled
-from flexstage.apps.studio.wire import array, encode
+from flexstage.apps.studio.wire import encode
 from flexstage.base.finding import DesignError
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
@@ -53,7 +53,7 @@ from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.models.theory import Model
 from tests.analytic.test_load_effect import upright
-from tests.apps.studio_page import PATIENCE, opened, served
+from tests.apps.studio_page import PATIENCE, array, opened, served
 
 THICKNESS = "parts.leaf.thickness"
 TEXT = dumps(parallelogram(), {"": "A guide.", "parts.leaf": "thin"})

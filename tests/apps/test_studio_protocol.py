@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from flexstage.apps.studio import protocol, wire
 from flexstage.apps.studio.protocol import Drag, Edit, Floats, Frequencies, Matrix, Motion, Refusal, Respond
-from flexstage.apps.studio.wire import array, decode, decode_said, encode, floats
+from flexstage.apps.studio.wire import decode, encode, floats
 from flexstage.base.finding import DesignError
+from tests.apps.studio_page import array
 from tools.protocol import TARGET, written
 
 
@@ -34,7 +35,7 @@ def test_requests_come_back(message):
 def test_what_the_server_says_comes_back():
     matrix = Matrix(("x",), ("B1", "B2"), (("1", "m/rad"),), ((1.0, None),))
     message = Motion(1, 2, matrix, None, None, None, None, {"a": 1.0}, {"a": None}, {})
-    assert decode_said(encode(message)) == message
+    assert decode(encode(message), protocol.Said) == message
 
 
 ANY = st.recursive(

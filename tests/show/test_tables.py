@@ -128,7 +128,7 @@ def test_every_value_of_a_description_is_listed_once(name: str) -> None:
 
 def test_values_are_listed_with_their_unit_and_where_they_come_from() -> None:
     listed = {row[0]: row[1:] for row in _values("double-triangle")}
-    assert listed["neck.thickness"] == ["1.54", "mm", "stated", "paper 2.2"]
+    assert listed["neck.thickness"] == ["1.54", "mm", "stated", "= neck_thickness; paper 2.2"]
     assert listed["steel.young"][2] == "assumed"
     assert {"N/mm", "ohm"} <= {row[2] for row in _values("z-stage")}
 

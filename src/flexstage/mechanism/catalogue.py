@@ -16,8 +16,9 @@ from flexstage.parts.piezo import Piezo
 
 @dataclass(frozen=True)
 class Section:
-    """Entries of one class by name, as tables of a design file; `kind` tells the class apart where the file needs that."""
+    """Entries of one class by name, as tables of a design file under `key`; `kind` tells the class apart where the file needs that."""
 
+    key: str
     record: type
     kind: str | None
     entries: Mapping[str, Mapping[str, Any]]
@@ -30,9 +31,9 @@ class Catalogue:
     sections: tuple[Section, ...]
     sources: Mapping[str, str]
 
-    def section(self, *records: type) -> Section | None:
-        """The section of one of the classes, if there is any."""
-        return next((section for section in self.sections if section.record in records), None)
+    def section(self, record: type) -> Section | None:
+        """The section of a class, if there is any."""
+        return next((section for section in self.sections if section.record is record), None)
 
     def sources_of(self, tags: Iterable[str]) -> dict[str, str]:
         """The sources that tags (`stated key place`) name."""
@@ -58,8 +59,8 @@ def catalogue_from(raw: Mapping[str, Any]) -> Catalogue:
     '200 GPa'
     """
     sections = (
-        Section(Material, None, raw.get("materials", {})),
-        Section(Piezo, "piezo", raw.get("stacks", {})),
-        Section(Gauge, None, raw.get("gauges", {})),
+        Section("materials", Material, None, raw.get("materials", {})),
+        Section("parts", Piezo, "piezo", raw.get("stacks", {})),
+        Section("sensors", Gauge, None, raw.get("gauges", {})),
     )
     return Catalogue(sections, raw.get("sources", {}))

@@ -48,8 +48,9 @@ Joins: TypeAlias = tuple[str, str] | Mapping[str, str]
 """Bodies that a link joins: first and second, or by the port of its part."""
 
 
-def _empty() -> Any:
-    return field(default_factory=lambda: Table({}))
+def _empty(metadata: Mapping[str, Any] | None = None) -> Any:
+    """A table without entries where none is given."""
+    return field(default_factory=lambda: Table({}), metadata=metadata)
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,15 +267,15 @@ class Mechanism(InNotebook, Description):
     max_mode_frequency: Annotated[Number, FREQUENCY, POSITIVE] | None = None
     ground: str | None = None
     overrides: Mapping[str, Any] = _empty()
-    requirements: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
+    requirements: Mapping[str, str] = _empty(DOCUMENT_ONLY)
     packages: tuple[str, ...] = field(default=(), metadata=DOCUMENT_ONLY)
-    tags: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
-    sources: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
-    numbers: Mapping[str, NamedNumber] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
-    formulas: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | BESIDE)
-    stops: Mapping[str, Stop] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
-    paths: Mapping[str, StrokePath] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | WHERE_STATED)
-    temperatures: Mapping[str, Annotated[Number, TEMPERATURE]] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
+    tags: Mapping[str, str] = _empty(DOCUMENT_ONLY)
+    sources: Mapping[str, str] = _empty(DOCUMENT_ONLY)
+    numbers: Mapping[str, NamedNumber] = _empty(DOCUMENT_ONLY)
+    formulas: Mapping[str, str] = _empty(DOCUMENT_ONLY | BESIDE)
+    stops: Mapping[str, Stop] = _empty(WHERE_STATED)
+    paths: Mapping[str, StrokePath] = _empty(DOCUMENT_ONLY | WHERE_STATED)
+    temperatures: Mapping[str, Annotated[Number, TEMPERATURE]] = _empty(WHERE_STATED)
 
     def view(self, *, motion: str = "mode 1") -> Any:
         """Return the interactive 3-D view of the stage, for a notebook or a page: `flexstage.view`."""

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any, Literal, TypeAlias, Union, get_args, get_origin, get_type_hints
 
-from flexstage.apps.studio import protocol
 from flexstage.apps.studio.protocol import Floats, Request, Said
 from flexstage.base.finding import refuse
 
@@ -28,14 +27,9 @@ def encode(message: Said | Request) -> str:
     return json.dumps({"kind": type(message).__name__.lower(), **_plain(message)}, ensure_ascii=False, allow_nan=False)
 
 
-def decode(text: str | bytes) -> Request:
-    """The request in a text; raises `DesignError` where it is none."""
-    return _read(text, _kinds(protocol.Request))
-
-
-def decode_said(text: str | bytes) -> Said:
-    """What the server said, from its text; raises `DesignError` where that is none."""
-    return _read(text, _kinds(protocol.Said))
+def decode(text: str | bytes, union: Any = Request) -> Any:
+    """The request in a text, or what the server said (`union`); raises `DesignError` where it is none."""
+    return _read(text, _kinds(union))
 
 
 def floats(values: Any) -> Floats:
@@ -44,13 +38,6 @@ def floats(values: Any) -> Floats:
 
     found = np.ascontiguousarray(values, dtype="<f8")
     return Floats(found.shape, base64.b64encode(found.tobytes()).decode("ascii"))
-
-
-def array(value: Floats) -> Any:
-    """The array that came over the wire."""
-    import numpy as np
-
-    return np.frombuffer(base64.b64decode(value.data), dtype="<f8").reshape(value.shape)
 
 
 def _plain(value: Any) -> Any:

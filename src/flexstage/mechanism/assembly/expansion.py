@@ -171,15 +171,10 @@ def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> li
 def _unstated_findings(mechanism: Mechanism, assembly: Assembly, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
     used = {material for material, _ in choices.values()}
     used |= {name for name in (material_of(as_drawn(mechanism, link).part) for link in assembly.links.values()) if name is not None}
-    missing = [
-        Finding(f"materials.{name}", "states no thermal expansion, and drift needs it", 'Add for example expansion = "10.3e-6 1/K"')
-        for name in sorted(used)
-        if name in mechanism.materials and mechanism.materials[name].expansion is None
-    ]
+    materials = [name for name in sorted(used) if name in mechanism.materials and mechanism.materials[name].expansion is None]
     stacks = [
         link.link.part for link in assembly.links.values() if _grows(link) and link.material is None and np.isnan(coefficient(link)).any()
     ]
-    return missing + [
-        Finding(f"parts.{name}", "states no thermal expansion, and drift needs it", 'Add for example expansion = "-3e-6 1/K"')
-        for name in dict.fromkeys(stacks)
-    ]
+    missing = {f"materials.{name}": "10.3e-6 1/K" for name in materials} | {f"parts.{name}": "-3e-6 1/K" for name in stacks}
+    what = "states no thermal expansion, and drift needs it"
+    return [Finding(where, what, f'Add for example expansion = "{example}"') for where, example in missing.items()]

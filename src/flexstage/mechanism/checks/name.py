@@ -131,25 +131,18 @@ def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) 
 
 def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
     gauged = {GROUND, *(name for name, body in placed_bodies(mechanism).items() if body.of is None)}
-    for name, probe in posed(mechanism.gauges).items():
-        yield from _check_known(f"gauges.{name}.body", "body", probe.body, gauged)
-        yield from _check_known(f"gauges.{name}.base", "body", probe.base, gauged)
-    yield from _check_stops(mechanism, gauged)
-    yield from gauge_findings(mechanism, {*mechanism.links, *_links_of_copies(mechanism)})
-    for section, items in (("payloads", mechanism.payloads), ("forces", mechanism.forces)):
+    loads = gauged - {GROUND}
+    bodies = (("gauges", posed(mechanism.gauges), gauged), ("stops", mechanism.stops, gauged))
+    for section, items, known in (*bodies, ("payloads", mechanism.payloads, loads), ("forces", mechanism.forces, loads)):
         for name, item in items.items():
-            yield from _check_known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
-    for name in mechanism.temperatures:
-        yield from _check_known(f"temperatures.{name}", "body", name, {EVERYWHERE, *gauged})
-
-
-def _check_stops(mechanism: Mechanism, moving: Iterable[str]) -> Iterator[Finding]:
-    """A stop is between two bodies that move by themselves, or one of them and the ground."""
+            for key in ("body", "base"):
+                yield from _check_known(f"{section}.{name}.{key}", "body", getattr(item, key, None), known)
     for name, stop in mechanism.stops.items():
-        yield from _check_known(f"stops.{name}.body", "body", stop.body, moving)
-        yield from _check_known(f"stops.{name}.base", "body", stop.base, moving)
         if stop.body == stop.base:
             yield Finding(f"stops.{name}.base", f'it is "{stop.body}", as the body is', "Name the body that it runs against")
+    yield from gauge_findings(mechanism, {*mechanism.links, *_links_of_copies(mechanism)})
+    for name in mechanism.temperatures:
+        yield from _check_known(f"temperatures.{name}", "body", name, {EVERYWHERE, *gauged})
 
 
 def _loops(mechanism: Mechanism) -> Iterator[Finding]:

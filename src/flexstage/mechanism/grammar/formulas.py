@@ -120,7 +120,12 @@ def read_numbers(table: Mapping[str, Any]) -> Numbers:
             values[name] = number
     found, told = _evaluate(texts, values, table)
     findings += told
-    return Numbers({name: found[name] for name in table if name in found}, _scope(table, found), _with_prefix(texts), tuple(findings))
+    return Numbers(
+        {name: found[name] for name in table if name in found},
+        _scope(table, found),
+        {PREFIX + name: text for name, text in texts.items()},
+        tuple(findings),
+    )
 
 
 def _plain_number(raw: Any, where: str) -> NamedNumber | None:
@@ -185,10 +190,6 @@ def _order(expressions: Mapping[str, Expression]) -> list[str]:
 
 def _scope(table: Mapping[str, Any], found: Mapping[str, NamedNumber]) -> Scope:
     return {name: amount_of(found[name]) if name in found else None for name in table}
-
-
-def _with_prefix(texts: Mapping[str, str]) -> dict[str, str]:
-    return {PREFIX + name: text for name, text in texts.items()}
 
 
 def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:

@@ -16,12 +16,13 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, Any
 
-from flexstage.base.finding import refuse, suggest_nearest
+from flexstage.base.finding import refuse
 from flexstage.base.number import Table
 from flexstage.base.register import Register
 from flexstage.base.storage.digest import KEY, digest
 from flexstage.base.units.quantity import COMPLIANCE_MATRIX, DIRECTION, STIFFNESS_MATRIX, Bound, Quantity
 from flexstage.mechanism.assembly.pattern import Polar, Pose
+from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar.node import (
     BAD,
     COMPLIANCES,
@@ -251,11 +252,10 @@ class RecordNode(Node):
         return _slots(self.record)
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The record, of what stands in the table, what its `like` brings along, and defaults."""
+        """The record, of what stands in the table, and defaults."""
         if not _is_table(raw, where, reader):
             return BAD
-        known_like = self._like_is_known(raw, where, reader)
-        raw = _strip_tags(self._expand(raw, reader) if known_like else _without_like(raw), where, reader)
+        raw = _strip_tags(raw, where, reader)
         values: dict[str, Any] = {}
         used: set[str] = set()
         for name, slot in self.fields.items():
@@ -263,8 +263,6 @@ class RecordNode(Node):
             if key in raw:
                 used.add(key)
                 values[name] = reader.read(inner, raw[key], join(where, key))
-            elif slot.required and not known_like:
-                values[name] = BAD
             elif slot.required:
                 advice = f"Write for example {slot.keys[0]} = {slot.node.example}"
                 values[name] = reader.refuse(where or "file", f"it has no {' or '.join(slot.keys)}", advice)
@@ -274,30 +272,6 @@ class RecordNode(Node):
         for key in [key for key in raw if key not in used]:
             reader.refuse(join(where, key), "this key is not known here", advise_key(key, set(known) - used, known))
         return BAD if BAD in values.values() else self.record(**values)
-
-    def _like_is_known(self, raw: dict[str, Any], where: str, reader: Reader) -> bool:
-        """Whether what `like` names is in the catalogue, if anything is; what an unknown entry would have brought is not missed besides."""
-        section = reader.catalogue.section(self.record)
-        if section is None or LIKE not in raw:
-            return True
-        name = raw[LIKE]
-        known = isinstance(name, str) and name in section.entries
-        if not known:
-            reader.refuse(join(where, LIKE), f"the catalogue has no {kind(name)}", suggest_nearest(kind(name), section.entries))
-        return known
-
-    def _expand(self, raw: dict[str, Any], reader: Reader) -> dict[str, Any]:
-        """The table with what its `like` brings along, overridden by what stands in it."""
-        section = reader.catalogue.section(self.record)
-        if section is None or LIKE not in raw:
-            return raw
-        name = raw[LIKE]
-        shipped = section.entries[name]
-        tags = {key: tag for key, tag in shipped.get(TAGS, {}).items() if key not in raw}
-        reader.sources.update(reader.catalogue.sources_of(tags.values()))
-        own = raw.get(TAGS, {})
-        merged = {"source": f"{name} of the catalogue"} | dict(shipped) | raw | {TAGS: tags | own if isinstance(own, dict) else own}
-        return _without_like(merged)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
         """A table of the fields that are not at their defaults, or have a formula."""
@@ -330,7 +304,7 @@ class RecordNode(Node):
                 wrapped += [{"required": [option]} for option in slot.keys]
             elif slot.required:
                 required.append(slot.key)
-        section = definitions.catalogue.section(self.record)
+        section = shipped_catalogue().section(self.record)
         demand: dict[str, Any] = {"required": required}
         if section is not None:
             properties |= {LIKE: {"enum": list(section.entries), "description": "the entry of the catalogue to start from"}}
@@ -392,8 +366,7 @@ class UnionNode(Node):
             return BAD
         options = dict(self.options)
         key = self.told_by or ""
-        entry = reader.catalogue.section(*self.records)
-        name = raw.get(key, self.usual or (entry.kind if entry and LIKE in raw else None))
+        name = raw.get(key, self.usual)
         if name is None:
             return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
         if not isinstance(name, str) or name not in options:
@@ -498,10 +471,6 @@ def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, An
 
 def _tags_of(definitions: Definitions) -> dict[str, Any]:
     return {TAGS: _TAGS_SCHEMA} if definitions.tagged else {}
-
-
-def _without_like(raw: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in raw.items() if key != LIKE}
 
 
 def node_of(record: type) -> RecordNode:

@@ -30,7 +30,6 @@ from flexstage.base.units.quantity import (
     Quantity,
 )
 from flexstage.base.units.unit import parse, quantity_of_unit, show
-from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.grammar.formulas import Numbers, formula_value, is_formula
 from flexstage.spatial.frame import COMPONENTS
 
@@ -62,7 +61,6 @@ class Reader:
     that were found, by address; without `numbers` there are none.
     """
 
-    catalogue: Catalogue
     tagged: bool = True
     findings: list[Finding] = field(default_factory=list)
     tags: dict[str, str] = field(default_factory=dict)
@@ -126,7 +124,6 @@ class Definitions:
     `tagged`: tables may have tags. `formulas`: numbers may be formulas.
     """
 
-    catalogue: Catalogue
     tagged: bool = True
     formulas: bool = False
     known: dict[str, Any] = field(default_factory=dict)
@@ -183,7 +180,7 @@ class Node:
         """The value that the text of an assignment means (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
         if not self.single:
             raise refuse(where, "it has several values", "Set one of them, for example its x")
-        reader = Reader(Catalogue((), {}))
+        reader = Reader()
         value = reader.read(self, text, where)
         require(reader.findings)
         return value

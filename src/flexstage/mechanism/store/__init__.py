@@ -61,7 +61,7 @@ def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path 
     """
     raw = parse_toml(text, where)
     try:
-        drawn = mechanism_from(raw, shipped_catalogue(), where if folder is None else str(folder / Path(where).name))
+        drawn = mechanism_from(raw, where if folder is None else str(folder / Path(where).name))
         mechanism = drawn if folder is None else anchor_paths(drawn, folder)
         return require_valid(mechanism) if checked else mechanism
     except DesignError as error:

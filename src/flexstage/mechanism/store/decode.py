@@ -8,16 +8,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.mechanism.addresses.address import set_text, set_value
 from flexstage.mechanism.addresses.locate import canonical, locate
 from flexstage.mechanism.assembly.mount import STAGES, Mount, mount_all
-from flexstage.mechanism.catalogue import Catalogue
+from flexstage.mechanism.catalogue import Section, shipped_catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.formulas import NUMBERS, read_numbers
-from flexstage.mechanism.grammar.grammar import OVERRIDES, TAGS, node_of
+from flexstage.mechanism.grammar.grammar import LIKE, OVERRIDES, TAGS, node_of
 from flexstage.mechanism.grammar.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.anchor import anchor_paths
@@ -28,20 +28,19 @@ from flexstage.mechanism.store.lines import with_lines
 _Record = TypeVar("_Record")
 
 
-def mechanism_from(raw: dict[str, Any], catalogue: Catalogue, where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
+def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
     """Return the description that a file's tree means; raises `DesignError` with everything that is wrong with it.
 
     Files that it includes, and those of stages that stand on it, are looked for beside the file `where`; `above` are those being read.
 
-    >>> from flexstage.mechanism.catalogue import shipped_catalogue
-    >>> mechanism_from({"format": "flexstage 1", "name": "empty"}, shipped_catalogue()).name
+    >>> mechanism_from({"format": "flexstage 1", "name": "empty"}).name
     'empty'
     """
     included, told = with_included(raw, where, above)
     raw = included.tree
     table = raw.get(NUMBERS)
     numbers = read_numbers({name: value for name, value in table.items() if name != TAGS} if isinstance(table, dict) else {})
-    reader = Reader(catalogue, numbers=numbers, formulas=dict(numbers.formulas))
+    reader = Reader(numbers=numbers, formulas=dict(numbers.formulas))
     mechanism: Any = None
     try:
         reader.note(told)
@@ -50,6 +49,11 @@ def mechanism_from(raw: dict[str, Any], catalogue: Catalogue, where: str = "", a
         reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
     require(included.located(reader.findings))
     return mechanism
+
+
+def read_design(text: str, where: str) -> Mechanism:
+    """Return the description that a file's text means, unchecked."""
+    return mechanism_from(parse_toml(text, where), where)
 
 
 def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged: bool = True) -> _Record:
@@ -61,7 +65,7 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
     >>> record_from(Rod, {"format": "rod 1", "material": "steel", "length": "3 mm", "diameter": "1 mm"}, "rod 1").length
     0.003
     """
-    reader = Reader(Catalogue((), {}), tagged)
+    reader = Reader(tagged)
     _check_format(reader, raw, form)
     value: Any = BAD
     try:
@@ -119,7 +123,7 @@ class _Files:
         except DesignError as error:
             return self._refuse(reader, address, (replace(finding, where=item.file) for finding in error.findings))
         try:
-            tree = mechanism_from(parse_toml(text, item.file), reader.catalogue, str(path), (*self.above, here))
+            tree = mechanism_from(parse_toml(text, item.file), str(path), (*self.above, here))
             return require_valid(anchor_paths(tree, path.parent))
         except DesignError as error:
             told = [finding for finding in error.findings if finding.where.startswith(f"{item.file}: ")]
@@ -136,6 +140,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     packages = raw.get("packages")
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
         return reader.note(missing)  # what they offer is not known, which says nothing about the rest
+    raw = _with_likes(reader, raw)
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES)}
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
@@ -161,6 +166,32 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     mechanism = replace(mechanism, overrides={**mechanism.overrides, **values}, tags=Table(tags), sources=Table(sources))
     formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # an override, where it is one by now
     return replace(mechanism, formulas=Table(formulas))
+
+
+def _with_likes(reader: Reader, raw: dict[str, Any]) -> dict[str, Any]:
+    """The tree with what the catalogue states of entries that are like its own."""
+    for section in shipped_catalogue().sections:
+        table = raw.get(section.key)
+        if isinstance(table, dict):
+            entries = {name: _with_like(reader, section, f"{section.key}.{name}", entry) for name, entry in table.items()}
+            raw = raw | {section.key: entries}
+    return raw
+
+
+def _with_like(reader: Reader, section: Section, where: str, entry: Any) -> Any:
+    """An entry with what its `like` brings along, overridden by what it states; what an unknown one would bring is not missed besides."""
+    own_kind = getattr(section.record, "kind", None)
+    if not isinstance(entry, dict) or LIKE not in entry or entry.get("kind", own_kind) != own_kind:
+        return entry
+    name, known = entry[LIKE], section.entries
+    if not isinstance(name, str) or name not in known:
+        reader.refuse(f"{where}.{LIKE}", f"the catalogue has no {kind(name)}", suggest_nearest(kind(name), known))
+    shipped = known.get(str(name)) or next(iter(known.values()))
+    tags, own = {key: tag for key, tag in shipped.get(TAGS, {}).items() if key not in entry}, entry.get(TAGS, {})
+    reader.sources.update(shipped_catalogue().sources_of(tags.values()))
+    brought = {"source": f"{name} of the catalogue"} | dict(shipped) | ({"kind": section.kind} if section.kind else {})
+    merged = brought | entry | {TAGS: tags | own if isinstance(own, dict) else own}
+    return {key: value for key, value in merged.items() if key != LIKE}
 
 
 def _with_own_values(

@@ -11,11 +11,10 @@ from flexstage.mechanism.addresses.address import get, set_text, set_value
 from flexstage.mechanism.addresses.locate import Place, canonical, locate
 from flexstage.mechanism.addresses.path import member, with_mirror
 from flexstage.mechanism.assembly.mount import STAGES
-from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar.grammar import TAGS, node_of
 from flexstage.mechanism.grammar.node import Node
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.decode import mechanism_from
+from flexstage.mechanism.store.decode import mechanism_from, read_design
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
 from flexstage.mechanism.store.include import INCLUDE, SECTIONS
@@ -39,7 +38,7 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     max_mode_frequency = "800 Hz"  # enough
     """
     tree = parse_toml(text, where)
-    mechanism = mechanism_from(tree, shipped_catalogue(), where)
+    mechanism = mechanism_from(tree, where)
     require(finding for address in values for finding in _elsewhere(locate(mechanism, address), tree))
     steps: list[_Step] = []
     for address, value in values.items():
@@ -68,7 +67,7 @@ def _write(text: str, portions: list[list[_Step]], wanted: Mechanism, where: str
     """The text after all changes, read anew after each portion of them."""
     for steps in portions:
         text = _patch_steps(text, steps)
-    if mechanism_from(parse_toml(text, where), shipped_catalogue(), where) != wanted:
+    if read_design(text, where) != wanted:
         raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
     return text
 

@@ -9,12 +9,10 @@ from flexstage.base.finding import refuse
 from flexstage.base.lazy import Late
 from flexstage.mechanism.addresses.address import tag_of
 from flexstage.mechanism.addresses.locate import locate
-from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar.formulas import NUMBERS
 from flexstage.mechanism.grammar.grammar import TAGS
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.decode import mechanism_from
-from flexstage.mechanism.store.file import parse_toml
+from flexstage.mechanism.store.decode import read_design
 
 if TYPE_CHECKING:
     import tomlkit
@@ -39,7 +37,7 @@ def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
     max_mode_frequency = "derived test"
     <BLANKLINE>
     """
-    mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue(), where)
+    mechanism = read_design(text, where)
     together = _with_tags(text, mechanism, tags, where, beside=True)
     return _one_by_one(text, mechanism, tags, where) if together is None else together
 
@@ -64,7 +62,7 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
             path = (NUMBERS, place.number) if place.number else place.path
             _put(document, path if beside and not place.owners else (), place.address, tag)
         found = tomlkit.dumps(document)
-        now = mechanism_from(parse_toml(found, where), shipped_catalogue(), where)
+        now = read_design(found, where)
     except (tomlkit.exceptions.TOMLKitError, ValueError):  # findings are ValueErrors
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())

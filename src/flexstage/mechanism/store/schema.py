@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import Any
 
 from flexstage.mechanism.assembly.mount import STAGES, Mount
-from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.grammar.node import Definitions
 from flexstage.mechanism.mechanism import Mechanism
@@ -38,7 +37,7 @@ def schema_of(
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]
     {'const': 'rod 1'}
     """
-    definitions = Definitions(shipped_catalogue(), tagged, formulas)
+    definitions = Definitions(tagged, formulas)
     root = node_of(record).definition(definitions)
     beside = {name: {"type": "object", "additionalProperties": node_of(each).schema(definitions)} for name, each in tables.items()}
     properties = {"format": {"const": form}, **root.pop("properties"), **beside}

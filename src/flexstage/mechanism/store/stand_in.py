@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.lazy import Late
-from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.grammar.grammar import TAGS, node_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.decode import mechanism_from
+from flexstage.mechanism.store.decode import read_design
 from flexstage.mechanism.store.encode import plain
-from flexstage.mechanism.store.file import parse_toml
 from flexstage.parts.compliance_matrix import ComplianceMatrix
 
 if TYPE_CHECKING:
@@ -56,7 +54,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
     >>> loads(text).parts["leaf"].replaces, "leaf-drawn" in loads(text).parts
     ('leaf-drawn', True)
     """
-    before = mechanism_from(parse_toml(text, where), shipped_catalogue(), where)
+    before = read_design(text, where)
     require(_clashes(before, parts))
     try:
         document = tomlkit.parse(text)
@@ -68,7 +66,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
         after = tomlkit.dumps(document)
     except (tomlkit.exceptions.TOMLKitError, KeyError) as error:
         raise refuse(where, f"the file cannot be changed: {error}", "Write it anew with dump") from None
-    found = require_valid(mechanism_from(parse_toml(after, where), shipped_catalogue(), where))
+    found = require_valid(read_design(after, where))
     if any(found.parts.get(name) != part.given for name, part in parts.items()):
         raise refuse(where, "its tables are laid out so that parts cannot be exchanged", "Write it anew with dump")
     return after
