@@ -17,7 +17,7 @@ from flexstage.base.number import Array, first_design
 from flexstage.base.storage.digest import keep
 from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
-from flexstage.beams.held import Held, join
+from flexstage.beams.fixed_end_modes import FixedEndModes, join
 from flexstage.beams.law import PartLaw
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import ALL, Freedom, others
@@ -94,8 +94,8 @@ def law(part: Part, material: Material | None) -> Law:
     if isinstance(part, Joint):
         return Law(np.zeros((6, 6)), locked_freedoms(part))
     if not isinstance(part, Restricted):
-        held = held_modes(part, material)
-        return Law(stiffness(part, material), inner=join(mode.squares for mode in held) if held else None)
+        modes = fixed_end_modes(part, material)
+        return Law(stiffness(part, material), inner=join(mode.squares for mode in modes) if modes else None)
     full = stiffness(part.part, material)
     kept, freed = _indices(part.elastic), _stiff_among(_indices(part.free), full)
     block = full[..., kept[:, None], kept]
@@ -125,19 +125,19 @@ def viscous_damping(part: Part) -> Array | None:
 
 
 @lru_cache(maxsize=32)
-def held_modes(part: Elastic, material: Material | None) -> tuple[Held, ...]:
+def fixed_end_modes(part: Elastic, material: Material | None) -> tuple[FixedEndModes, ...]:
     """Compute the fixed-end modes of a part, `inner_modes` of them, at the stations of its beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
-    >>> [mode.axis for mode in held_modes(Leaf("steel", length=0.1, thickness=0.001, width=0.01, inner_modes=2), steel)]  # y, about x
+    >>> [mode.axis for mode in fixed_end_modes(Leaf("steel", length=0.1, thickness=0.001, width=0.01, inner_modes=2), steel)]  # y, about x
     [1, 3]
     """
     known = law_of(part)
-    if part.inner_modes == 0 or known is None or known.held is None:
+    if part.inner_modes == 0 or known is None or known.fixed_end_modes is None:
         return ()
     half = first_design(np.real(beam_of(part, material).points.position), 1)
-    return known.held(part, _required_material(part, material), np.concatenate([-half, half]) / half[-1])
+    return known.fixed_end_modes(part, _required_material(part, material), np.concatenate([-half, half]) / half[-1])
 
 
 def locked_freedoms(part: Part) -> tuple[Freedom, ...]:

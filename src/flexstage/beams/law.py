@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam
-from flexstage.beams.held import Held
+from flexstage.beams.fixed_end_modes import FixedEndModes
 from flexstage.parts.material import Material
 
 _CALIBRATE = 'Specify a measured or computed 6x6 (kind = "compliance_matrix"), or expect a larger error than listed'
@@ -82,5 +82,5 @@ class PartLaw:
     concentration: Callable[[Any], Number | None] | None = None
     ranges: Callable[[Any], tuple[Range, ...]] = _no_ranges
     family: Callable[[Any], str | None] = _no_family
-    held: Callable[[Any, Material, Array], tuple[Held, ...]] | None = None
+    fixed_end_modes: Callable[[Any, Material, Array], tuple[FixedEndModes, ...]] | None = None
     needs_material: bool = True

@@ -15,7 +15,7 @@ from flexstage.base.number import Array
 from flexstage.base.processes.native import kernel_library
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import gauss
-from flexstage.models.nonlinear.graph import Rest
+from flexstage.models.nonlinear.graph import OtherTerms
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions
 
@@ -52,7 +52,7 @@ class _Task(ctypes.Structure):
 
 
 @dataclass(frozen=True, eq=False)
-class Ended:
+class CompiledResult:
     """Poses of b cases after their iterations, with `status`, `count` of iterations, last step `moved` and last residual `lack` (b,)."""
 
     pose: Pose
@@ -100,8 +100,8 @@ def tables(model: Nonlinear) -> Tables | None:
     return Tables(tuple(sizes for sizes, _ in known), tuple(arrays for _, arrays in known))
 
 
-def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, rest: Rest | None) -> Ended:
-    """Iterate every case in C; with a `rest`, valid at these poses, at most once. Requires `kernel` and `tables`.
+def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, other: OtherTerms | None) -> CompiledResult:
+    """Iterate every case in C; with a `other`, valid at these poses, at most once. Requires `kernel` and `tables`.
 
     Equal to `newton.iterate` up to rounding; to the bit independent of the other cases of a call.
     """
@@ -112,7 +112,7 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: Solve
         _copy(start.position), _copy(start.turn), tuple(map(_copy, start.strain)), tuple(map(_copy, start.wrench)), _copy(start.held)
     )
     results = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
-    terms = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
+    terms = {} if other is None else {"residual": _copy(other.residual), "stiffness": _copy(other.stiffness)}
     held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | results | terms
     groups, settings = _groups(model, pose), (model.size, model.reach, options.step, options.gap, options.limit)
     sizes = (cases, len(model.bodies), pose.held.shape[1], len(groups), len(held["body"]), options.iterations, int(np.any(loads.gravity)))
@@ -121,7 +121,7 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: Solve
     task.group = ctypes.addressof(groups)
     if library.flexstage_equilibria(ctypes.byref(task)):
         results["status"][:], results["moved"][:] = 2, np.nan
-    return Ended(pose, **results)
+    return CompiledResult(pose, **results)
 
 
 def _groups(model: Nonlinear, pose: Pose) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.elements.condense import system
 from flexstage.models.nonlinear.equilibrium import State
-from flexstage.models.nonlinear.graph import Bent, assemble, follow
+from flexstage.models.nonlinear.graph import FlexureState, assemble, follow
 from flexstage.models.nonlinear.linearise import flexure_motions, modal_motions
 from flexstage.models.nonlinear.paths.critical_load import Critical
 
@@ -90,7 +90,7 @@ def critical_motion(critical: Critical) -> Motions:
     return Motions(moved[:, :-1], {name: each[None] for name, each in lines.items()})
 
 
-def _softest(bent: Bent, place: int) -> Array:
+def _softest(bent: FlexureState, place: int) -> Array:
     """Amplitudes, force and moment of the own system of one flexure that are nearest to zero resistance."""
     matrix = system(bent.tangent)[place, 0]
     return np.linalg.svd(matrix)[2][-1]
