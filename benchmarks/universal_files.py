@@ -35,7 +35,7 @@ from flexstage.experiment.formats.uff.write import write_uff
 from flexstage.experiment.records.options import Options
 from flexstage.experiment.records.record import Channel, Record, in_memory
 from tests.roundtrip.fuzzed import one_input
-from tests.roundtrip.records import awkward, awkward_record, awkward_responses
+from tests.roundtrip.records import awkward, awkward_record, awkward_responses, write_form
 
 Read = Callable[[Path], list[Array]]
 _LONG = 12
@@ -126,6 +126,10 @@ def by_pyuff(path: Path, record: Record, *, binary: bool) -> None:
     pyuff.UFF(str(path)).write_sets(sets)
 
 
+def by_ours(path: Path, record: Record, *, binary: bool) -> None:
+    write_form(path, record, "uff" if binary else "uff-ascii")
+
+
 def round_trips(folder: Path) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     plain = in_memory(awkward_record().channels, 2048.0, np.random.default_rng(2).standard_normal((500, 6)))
@@ -133,7 +137,7 @@ def round_trips(folder: Path) -> list[tuple[str, ...]]:
     for name, record in (("a record of ordinary numbers", plain), ("of awkward ones, NaN and infinity", strange)):
         for binary in (True, False):
             right = list(np.ascontiguousarray(record.values.T))
-            for writer, write in (("ours", write_uff), ("pyuff", by_pyuff)):
+            for writer, write in (("ours", by_ours), ("pyuff", by_pyuff)):
                 path = folder / f"{writer}{binary}{len(rows)}.uff"
                 write(path, record, binary=binary)
                 form = "binary" if binary else "ASCII"
@@ -154,7 +158,7 @@ def awkward_files(folder: Path) -> list[tuple[str, ...]]:
     record, path = in_memory([Channel("S1", "um"), Channel("S2", "m/s²")], 100.0, values), folder / "awkward.uff"
     write_uff(path, record)
     binary, right = path.read_bytes(), list(np.ascontiguousarray(values.T))
-    write_uff(path, record, binary=False)
+    by_ours(path, record, binary=False)
     text, from_text = path.read_text(), ours(path)
     marked = values.copy()
     marked[10, 0] = np.frombuffer(b"    -1\n ", "<f8")[0]

@@ -341,7 +341,6 @@ BAD = {
     "no stack is in a leg": ("voice-coil-stage", DampingSetup()),
     "the stage has no strain gauge of this name": ("parallelogram", DampingSetup(gauges=("Q",))),
     "both a damping ratio and a gain are given": ("parallelogram", DampingSetup(ratio=0.3, gain=100.0)),
-    "found 3. Give 2": ("parallelogram", DampingSetup(order=3)),
     "damping.rate: 25000 Hz is 2.5 times the rate of the loop": ("parallelogram", DampingSetup(rate=25e3)),
 }
 

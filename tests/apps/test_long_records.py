@@ -18,6 +18,7 @@ import pytest
 
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.pipeline import identification, usable_measurement
+from flexstage.experiment.progress import followed
 from flexstage.experiment.records import numbers
 from flexstage.experiment.records.health import examine
 from flexstage.experiment.records.record import Record, Samples
@@ -130,7 +131,8 @@ def opened(path: Path, seconds: float) -> tuple[Record, Truth]:
 def test_never_more_than_a_block_is_read(tmp_path: Path, small_blocks: int) -> None:
     whole, known = opened(tmp_path / "a.h5", 40.0)
     counted, shares = Counted(whole.samples, 12), [0.0]
-    seen = identification(usable_measurement([replace(whole, samples=counted)]), told=lambda _, share: shares.append(share))
+    with followed(lambda _, share: shares.append(share)):
+        seen = identification(usable_measurement([replace(whole, samples=counted)]))
     modes_are_found(seen.found.frequencies, known)
     assert counted.most <= small_blocks < whole.length * 12
     assert shares == sorted(shares)

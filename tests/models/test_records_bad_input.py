@@ -15,12 +15,12 @@ import scipy.io
 
 from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.health import examine
 from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options
 from flexstage.experiment.records.record import Channel, Record, Responses, in_memory
 from tests.conftest import FULL
 from tests.roundtrip.records import awkward_responses, write_version_73
+from tests.roundtrip.records import write_form as write
 
 RATE = 100.0
 VALUES = np.random.default_rng(5).standard_normal((400, 2))

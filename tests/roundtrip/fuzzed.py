@@ -24,20 +24,19 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
 from flexstage.control.study.file import example, loads_setup
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options
 from flexstage.experiment.records.record import Channel, Record, Role, in_memory
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.store import dumps, loads, round_to_digits
 from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.example import neck_study
-from flexstage.studies.sweeps.execution.gather import gather
-from flexstage.studies.sweeps.execution.store import read_results
+from flexstage.studies.sweeps.execution.store import gather, read_results
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.tolerances.file import loads_tolerance
 from tests.roundtrip.designs import TEXT
 from tests.roundtrip.mutation import altered, mutated, noise, reshaped
 from tests.roundtrip.records import awkward_record, awkward_responses, write_version_73
+from tests.roundtrip.records import write_form as write
 
 GUIDE = """format = "flexstage 1"
 name = "guide"

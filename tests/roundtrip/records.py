@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role
 
 NAMES = ("u1", "B4/pivot.mz", "S1", "förder weg", 'gauge "a", left', "x [mm]")
@@ -42,6 +43,32 @@ def awkward_responses(seed: int = 0, *, even: bool = True, coherence: bool = Tru
 
 def bits(values: Array) -> bytes:
     return np.ascontiguousarray(values).tobytes()
+
+
+def write_form(path: Path, what: Record | Responses, form: str = "") -> None:
+    """Write a file, in `uff-ascii` too: the binary universal file that is written here, its numbers printed as the format says."""
+    if form != "uff-ascii":
+        write(path, what, form)
+        return
+    write(path, what, "uff")
+    rest, printed = path.read_bytes(), b""
+    while rest:
+        *lines, rest = rest.split(b"\n", 13)
+        size, count, is_even = int(lines[1][31:43]), int(lines[8][10:20]), bool(int(lines[8][20:30]))
+        numbers = np.frombuffer(rest[:size], "<f8").reshape(max(1, count) if count else 0, -1)
+        printed += b"\n".join([lines[0], f"{58:6d}".ljust(80).encode(), *lines[2:], _printed(numbers, is_even=is_even)])
+        printed, rest = printed + rest[size : size + 7], rest[size + 7 :]
+    path.write_bytes(printed)
+
+
+def _printed(numbers: Array, *, is_even: bool) -> bytes:
+    """Four numbers a line; with frequencies of 6 digits one complex value a line, or two real ones."""
+    if is_even:
+        words, each = [f"{number:20.12E}" for number in numbers.ravel().tolist()], 4
+    else:
+        form, each = "{:13.5E}" + "{:20.12E}" * (numbers.shape[1] - 1), 3 - (numbers.shape[1] - 1)
+        words = [form.format(*line) for line in numbers.tolist()]
+    return "".join("".join(words[begin : begin + each]) + "\n" for begin in range(0, len(words), each)).encode()
 
 
 def write_version_73(path: Path, values: dict[str, Any]) -> Path:

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.uff import write as uff_write
-from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, in_memory
 from tests.conftest import examples
 from tests.roundtrip.records import awkward_record, awkward_responses, bits
+from tests.roundtrip.records import write_form as write
 
 SUFFIX = {"uff": ".uff", "uff-ascii": ".unv", "mat": ".mat", "hdf5": ".h5", "csv": ".csv"}
 EXACT = [form for form in SUFFIX if form != "uff-ascii"]

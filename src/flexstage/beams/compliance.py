@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array, first_design
+from flexstage.base.session import SESSION
 from flexstage.base.storage.digest import keep
 from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
@@ -124,7 +124,7 @@ def viscous_damping(part: Part) -> Array | None:
     return own if np.any(own) else None
 
 
-@lru_cache(maxsize=32)
+@SESSION.keep(32)
 def fixed_end_modes(part: Elastic, material: Material | None) -> tuple[FixedEndModes, ...]:
     """Compute the fixed-end modes of a part, `inner_modes` of them, at the stations of its beam.
 
@@ -187,7 +187,7 @@ def _unknown(part: Part) -> DesignError:
     return refuse(f"a part of kind {inner(part).kind}", what, advice)
 
 
-@lru_cache(maxsize=32)
+@SESSION.keep(32)
 def _diagonal(part: Elastic, material: Material | None) -> Array:
     own = _law_of(part).diagonal
     return beam_of(part, material).diagonal() if own is None else own(part, _required_material(part, material))

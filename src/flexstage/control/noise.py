@@ -21,7 +21,6 @@ from flexstage.control.plant_models.plants import SENSED
 from flexstage.control.robustness.stability import require_stable
 from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.curves import points_around, rates_of
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System, select
 from flexstage.control.white_noise import Kind, Source, bounded_amplifiers, mean_squares, white_system
 from flexstage.mechanism.mechanism import GROUND
@@ -178,7 +177,7 @@ def _sum_by_source(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, 
 
 def _white_density(white: System, sources: tuple[Source, ...], frequencies: Array) -> Array:
     """One-sided densities (f, p, k) of white sources: 2 T |H|^2, or 2 |H|^2 of a continuous loop; none above half the sampling rate."""
-    size = 2.0 * np.abs(resolvent(white).at(frequencies)) ** 2
+    size = 2.0 * np.abs(white.sweep(frequencies)) ** 2
     if white.step is not None:
         size = np.where((frequencies <= 0.5 / white.step)[:, None, None], white.step * size, 0.0)
     return _sum_by_source(size, sources)[0]
@@ -223,9 +222,9 @@ class DisturbanceResponse:
             return np.zeros((len(frequencies), len(self.outputs), 0), complex)
         own = [name for name in self.outputs if name in given.system.output_names]
         rows = [self.outputs.index(name) for name in own]
-        felt = resolvent(select(given.system, self.inputs, (*(f"gap.{name}" for name in given.gauges), *own))).at(frequencies)
+        felt = select(given.system, self.inputs, (*(f"gap.{name}" for name in given.gauges), *own)).sweep(frequencies)
         noises = [f"noise.{name}" for name in given.gauges]
-        found = resolvent(select(self.closed.system, noises, self.outputs)).at(frequencies) @ felt[:, : len(noises)]
+        found = select(self.closed.system, noises, self.outputs).sweep(frequencies) @ felt[:, : len(noises)]
         found[:, rows] += felt[:, len(noises) :]
         return found
 

@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
 from flexstage.control.plant_models.plants import Plant, sensor_filter
 from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.system import System, connect, select
+from flexstage.control.systems.system import System, connect, reachable, select
 from flexstage.models.linear.model import Channel
 
 
@@ -138,21 +138,12 @@ def gauge_noise(given: Plant, gauge: str, density: float) -> System:
 def _filtered_noise(filters: System, name: str, density: float, step: float) -> System:
     """The samples of white noise behind lag and filter: x[k+1] = e^{AT} x[k] + L w[k], unit w."""
     outputs = (Channel(f"coloured.{name}", filters.outputs[0].unit),)
-    used = _reachable(filters)
+    used = reachable(filters)
     if not len(used.A):
         return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{name}", "1"),), outputs, step)
     factor = held_noise(used.A, used.B * density / np.sqrt(2.0), step)
     inputs = tuple(Channel(f"white.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
     return System(scipy.linalg.expm(used.A * step), factor, used.C, np.zeros((1, len(inputs))), inputs, outputs, step)
-
-
-def _reachable(filters: System) -> System:
-    """One gauge's lag and filter without the states of the others, which nothing drives."""
-    own, reached = np.any(filters.B != 0.0, axis=1), np.zeros(0, bool)
-    while not np.array_equal(own, reached):
-        reached = own
-        own = own | np.any(filters.A[:, own] != 0.0, axis=1)
-    return replace(filters, A=filters.A[np.ix_(own, own)], B=filters.B[own], C=filters.C[:, own])
 
 
 def _with_amplifiers(

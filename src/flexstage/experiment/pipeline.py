@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, TypeAlias
 
@@ -16,14 +16,12 @@ from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.outputs.unrecorded import identify_decay, identify_floor
+from flexstage.experiment.progress import part
 from flexstage.experiment.records.health import RecordRequirements, responses_findings, usable_record
 from flexstage.experiment.records.options import FaultTolerance
-from flexstage.experiment.records.record import Record, Responses, report_reading
-from flexstage.experiment.spectral.cross_spectra import Spectra, Tell, pool, spectra
+from flexstage.experiment.records.record import Record, Responses
+from flexstage.experiment.spectral.cross_spectra import Spectra, pool, spectra
 from flexstage.experiment.spectral.transfer import h2, multiple_coherence, spectral_ratio
-
-Told: TypeAlias = Callable[[str, float], None]
-"""Told what is done now, and the share of all that is done."""
 
 Measurement: TypeAlias = tuple[Record, ...] | Responses
 """What was measured: records of one stage that belong together, or an analyser's responses."""
@@ -66,7 +64,6 @@ def usable_measurement(
     contents: Sequence[Record | Responses],
     accept_faults: frozenset[FaultTolerance] = frozenset(),
     requirements: RecordRequirements | None = None,
-    told: Told | None = None,
 ) -> Measurement:
     """What of the files' contents can be used together; raises `DesignError` with every fault that is not allowed.
 
@@ -86,14 +83,15 @@ def usable_measurement(
     kept: list[Record] = []
     for index, record in enumerate(records):
         try:
-            kept.append(_sound_record(record, accept_faults, wanted, _part_progress(told, index, len(records))))
+            with part(index * _LOOKED / len(records), (index + 1) * _LOOKED / len(records), "looking at the record"):
+                kept.append(usable_record(record, accept_faults, wanted))
         except DesignError as error:
             findings += error.findings
     require(join_findings(findings))
     return tuple(kept)
 
 
-def identification(test: Measurement, search: Search = _DEFAULT, told: Told | None = None) -> Identification:
+def identification(test: Measurement, search: Search = _DEFAULT) -> Identification:
     """The modes of a test, and the spectra they were found in. Raises `DesignError` as `identify` does.
 
     >>> from flexstage.experiment.example import one_mode_record
@@ -101,40 +99,30 @@ def identification(test: Measurement, search: Search = _DEFAULT, told: Told | No
     >>> round(float(seen.found.frequencies[0]), 1), seen.multiple.shape[1]
     (10.0, 1)
     """
-    if search.excitation is not Excitation.RECORDED:
-        return Identification(test, _without_inputs(test, search, _stage_progress(told, "finding modes", _LOOKED, 1.0)))
-    if isinstance(test, Responses):
-        return Identification(test, identify(test, search, _stage_progress(told, "finding modes", 0.0, 1.0)))
+    if search.excitation is not Excitation.RECORDED or isinstance(test, Responses):
+        with part(_LOOKED, 1.0, "finding modes"):
+            return Identification(
+                test, identify(test, search) if search.excitation is Excitation.RECORDED else _without_inputs(test, search)
+            )
     segments = search.segments if search.segments is not None else choose_segments(test)
     share = (_SPECTRA - _LOOKED) / len(test)
-    parts = [
-        spectra(record, segments, _stage_progress(told, "spectra", _LOOKED + index * share, _LOOKED + (index + 1) * share))
-        for index, record in enumerate(test)
-    ]
-    found = identify(list(test), search, _stage_progress(told, "finding modes", _SPECTRA, 1.0), parts)
+    parts: list[Spectra] = []
+    for index, record in enumerate(test):
+        with part(_LOOKED + index * share, _LOOKED + (index + 1) * share, "spectra"):
+            parts.append(spectra(record, segments))
+    with part(_SPECTRA, 1.0, "finding modes"):
+        found = identify(list(test), search, parts)
     names = {channel.name for channel in found.inputs}
     known = pool([part.driven(names) for part in parts])
     second = h2(known) if len(known.outputs) >= len(known.inputs) else None
     return Identification(test, found, known, multiple_coherence(known), second, spectral_ratio(known))
 
 
-def _without_inputs(test: Measurement, search: Search, tell: Tell | None) -> Identified:
+def _without_inputs(test: Measurement, search: Search) -> Identified:
     if isinstance(test, Responses):
         what = f"the test is of responses to inputs, and {search.excitation.value} is said to have moved the stage"
         raise refuse(test.where, what, "Leave the excitation out, or give records of outputs")
-    find = identify_floor if search.excitation is Excitation.FLOOR else identify_decay
-    return find(test, search, tell)
-
-
-def _sound_record(record: Record, accept_faults: frozenset[FaultTolerance], requirements: RecordRequirements, told: Told | None) -> Record:
-    """The usable part of the record itself, not of the one that tells how far it was read."""
-    tell = _stage_progress(told, "looking at the record", 0.0, _LOOKED)
-    seen = record if tell is None else report_reading(record, lambda stop: tell(stop / max(1, record.length)))
-    kept = usable_record(seen, accept_faults, requirements)
-    first = round((kept.start - record.start) * record.rate)
-    whole = kept.length == record.length
-    chosen = record if kept.names == record.names else record.select(kept.names)
-    return chosen if whole else chosen.part(first, first + kept.length)
+    return identify_floor(test, search) if search.excitation is Excitation.FLOOR else identify_decay(test, search)
 
 
 def _sound_responses(responses: Responses, accept_faults: frozenset[FaultTolerance], requirements: RecordRequirements) -> Responses:
@@ -162,11 +150,3 @@ def _mixed_kinds(contents: Sequence[Record | Responses]) -> list[Finding]:
         return []
     kinds = ", ".join(f"{each.source or each.name or 'one'}: {'record' if isinstance(each, Record) else 'responses'}" for each in contents)
     return [Finding("records", f"responses cannot be put together with others ({kinds})", "Give several records, or responses alone")]
-
-
-def _stage_progress(told: Told | None, text: str, start: float, stop: float) -> Callable[[float], None] | None:
-    return None if told is None else lambda share: told(text, start + share * (stop - start))
-
-
-def _part_progress(told: Told | None, index: int, count: int) -> Told | None:
-    return None if told is None else lambda text, share: told(text, (index * _LOOKED + share) / count)

@@ -16,6 +16,7 @@ from flexstage.base.units.unit import parse
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import Identification, identification, usable_measurement
+from flexstage.experiment.progress import followed
 from flexstage.experiment.records import options
 from flexstage.experiment.records.health import RecordRequirements
 from flexstage.experiment.records.record import Record, Responses
@@ -156,9 +157,8 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
     """The modes of the records, each warning told; with the model of the stage and its `highest` mode [Hz] where they are known."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
-    with progress_bar() as shown:
-        test = usable_measurement(open_records(paths, reader), reader.accept_faults, needs, shown.share)
-        seen = identification(test, search, shown.share)
+    with progress_bar() as shown, followed(shown.share):
+        seen = identification(usable_measurement(open_records(paths, reader), reader.accept_faults, needs), search)
     for warning in seen.found.data_warnings:
         print_warning(warning)
     return seen

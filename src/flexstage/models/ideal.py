@@ -14,7 +14,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any, cast
 
 import numpy as np
@@ -23,6 +22,7 @@ import scipy
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
+from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import law
@@ -85,7 +85,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     return _cached(Same(mechanism)) if is_single(expand(mechanism)) else _read(mechanism)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _cached(key: Same) -> Kinematics:
     """Result of one design, cached for further calls with the same description."""
     return _read(key.mechanism)

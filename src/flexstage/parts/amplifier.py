@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
+from flexstage.base.units.quantity import CURRENT, FREQUENCY, POSITIVE, RESISTANCE
 
 
 @dataclass(frozen=True)
@@ -17,9 +19,9 @@ class Amplifier(CheckedFields):
     `bandwidth` [Hz] as stated, or that of the output `resistance` R [ohm], 1/(2 pi R C). `current` [A] is the largest it gives.
     """
 
-    bandwidth: float | None = None
-    resistance: float | None = None
-    current: float | None = None
+    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    resistance: Annotated[float, RESISTANCE, POSITIVE] | None = None
+    current: Annotated[float, CURRENT, POSITIVE] | None = None
 
     def cutoff(self, capacitances: Array) -> Array:
         """Its bandwidth [Hz] on stacks of those capacitances [F]; infinite where nothing limits it.

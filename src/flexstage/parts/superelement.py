@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Annotated, ClassVar
@@ -109,11 +109,6 @@ class Superelement(Elastic):
     def order(self) -> tuple[str, ...]:
         """The names of its ports in the order of their rows in the file."""
         return tuple(sorted(self.ports, key=lambda name: self.ports[name].row))
-
-    def with_paths(self, change: Callable[[str], str]) -> Superelement:
-        """The part with its files' paths changed."""
-        names = ("file", "stiffness_file", "mass_file", "damping_file")
-        return replace(self, **{name: change(path) for name in names if (path := getattr(self, name))})
 
 
 def _across(vector: Vector) -> Vector:

@@ -21,6 +21,9 @@ WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 MOTION = UnitOf(lambda name: TWIST_UNITS[COMPONENTS.index(name)])
 """Annotation of twists by coordinate: x in m, rz in rad."""
 
+WRENCH = UnitOf(lambda name: WRENCH_UNITS[COMPONENTS.index(name)])
+"""Annotates loads by the coordinate they work along: x in N, rz in N m."""
+
 _UNIT = np.eye(6)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
 
 import numpy as np
 
@@ -37,6 +36,7 @@ from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.labelled import NOISE, ratio_units
 from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.number import Array, first_design
+from flexstage.base.session import SESSION
 from flexstage.beams.compliance import compliance, stiffness
 from flexstage.beams.stress import stress
 from flexstage.mechanism.addresses.address import addresses, get
@@ -302,7 +302,7 @@ class Bearing:
         return np.nan if limit is None else float(np.ravel(np.real(limit))[0])
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _bearing(text: str, file: str) -> Bearing:
     return Bearing(bench(text, file))
 

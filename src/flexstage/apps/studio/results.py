@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,6 +47,7 @@ from flexstage.apps.studio.wire import floats
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.model import LinearModel
@@ -80,7 +80,7 @@ class Timer:
         return 1e3 * (time.process_time() - self._start)
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def bench(text: str, file: str) -> Bench:
     """What is known of a design."""
     return bench_of(design(text, file))
@@ -136,7 +136,7 @@ def warnings(text: str, file: str, revision: int) -> Warnings:
     return Warnings(revision, _doubts(text, file))
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def _doubts(text: str, file: str) -> tuple[Problem, ...]:
     from flexstage.analysis.caveats import caveats
 
@@ -154,14 +154,14 @@ def still(text: str, file: str) -> Mapping[str, Any]:
     return _still(text, file).document()
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def _still(text: str, file: str) -> StageData:
     from flexstage.show.viewer.data import still_data
 
     return still_data(design(text, file), text=text)
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def drawn(text: str, file: str) -> StageData:
     """The stage of a design for a viewer."""
     from flexstage.show.viewer.data import stage_data
@@ -192,7 +192,7 @@ def _known(known: Bench, name: str) -> Any:
         return None
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def judged(text: str, file: str) -> tuple[Verdict, ...]:
     """The verdicts on a design. Raises `DesignError` where its text has errors."""
     known = bench(text, file)
@@ -207,7 +207,7 @@ def _stored_verdicts(stored: str, file: str) -> tuple[Verdict, ...]:
         return ()
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress | None, Buckling | None], dict[str, str]]:
     """Of the workspace what is shown: strokes, stress and buckling, as `workspace` has them; with reasons for what is not there."""
     known, attempt = bench(text, file), Attempts()
@@ -301,7 +301,7 @@ def _with_old(found: Iterable[KeyFigure], kind: str, stored: str, text: str, fil
         yield Figure(each.name, each.name.partition(".")[0], each.unit, shown, 1.0 / form.factor, each.value, stood)
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
     try:
         known = bench(stored, file)

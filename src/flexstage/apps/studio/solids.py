@@ -63,7 +63,7 @@ def hinge_facts(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
     try:
         known = {name: each for name, each in distinct_hinges(mechanism).items() if link.drawn in each.links}
         jobs = hinge_jobs(turned_forms(known), accuracy_of(_VERIFIED, None))
-        stored = {job.name: find(Cache(), job.key, job.name, HINGES).element for job in jobs}
+        stored = {job.name: find(Cache(), job.key, job.name, HINGES) for job in jobs}
         return tuple(fact for name, each in known.items() for fact in _facts(link, stored[name], each))
     except DesignError:  # a part without a shape, or one whose compliance theory does not give
         return ()

@@ -30,7 +30,8 @@ from flexstage.control.tuning.outcome import outcome
 from flexstage.control.tuning.search import field
 from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.view import view
-from flexstage.experiment.pipeline import Identification, Told
+from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.progress import Told
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 

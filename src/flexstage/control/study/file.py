@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
-from flexstage.control.study.setup import FileMotion, LoopSetup
+from flexstage.control.study.setup import LoopSetup
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.lines import with_lines
@@ -31,13 +32,38 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
     ...     load_setup(f"{folder}/loop.toml") == LoopSetup()
     True
     """
-    found = loads_setup(read_text(path), where=os.fspath(path))
-    root = Path(path).resolve().parent
-    if found.hysteresis is not None and found.hysteresis.file is not None:
-        found = replace(found, hysteresis=replace(found.hysteresis, file=str(root / found.hysteresis.file)))
-    if isinstance(found.trajectory, FileMotion):
-        found = replace(found, trajectory=replace(found.trajectory, file=str(root / found.trajectory.file)))
-    return found
+    return read_setup(path, {})
+
+
+@dataclass(frozen=True)
+class Change:
+    """A raw value that goes before the file's, or a function of the file's own; `option` names it in findings."""
+
+    option: str
+    value: Any
+
+
+def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, Change]) -> LoopSetup:
+    """Return the set-up in a file, none: the default, with changes by address.
+
+    >>> read_setup(None, {"controller.bandwidth": Change("--bandwidth", "30 Hz")}).controller.bandwidth
+    30.0
+    """
+    text, where = ("", "set-up") if path is None else (read_text(path), os.fspath(path))
+    raw: dict[str, Any] = {"format": FORMAT} if path is None else parse_toml(text, where)
+    for part in (raw.get("hysteresis"), raw.get("trajectory")):
+        if path is not None and isinstance(part, dict) and isinstance(part.get("file"), str):
+            part["file"] = str(Path(path).resolve().parent / part["file"])
+    for address, change in changes.items():
+        *tables, key = address.split(".")
+        table = raw
+        for each in tables:
+            table = table.setdefault(each, {})
+            if not isinstance(table, dict):
+                break
+        else:
+            table[key] = change.value(table.get(key)) if callable(change.value) else change.value
+    return _setup_of(raw, text, where)
 
 
 def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
@@ -46,7 +72,10 @@ def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
     >>> loads_setup('format = "flexstage loop 1"\nrate = "5 kHz"').rate
     5000.0
     """
-    raw = parse_toml(text, where)
+    return _setup_of(parse_toml(text, where), text, where)
+
+
+def _setup_of(raw: dict[str, Any], text: str, where: str) -> LoopSetup:
     try:
         return record_from(LoopSetup, raw, FORMAT)
     except DesignError as error:

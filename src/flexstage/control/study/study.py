@@ -41,7 +41,8 @@ from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
 from flexstage.control.systems.curves import Curves, curves
-from flexstage.experiment.pipeline import Identification, Told
+from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.progress import Told
 from flexstage.mechanism.mechanism import Mechanism
 
 _LOWEST = 0.1

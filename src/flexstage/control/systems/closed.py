@@ -10,6 +10,8 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
 from flexstage.control.systems.system import System, connect, rename, select, static
 from flexstage.models.linear.model import Channel
@@ -82,6 +84,22 @@ def loop(given: Plant, controller: System) -> Loop:
     outputs = (*plant_held.output_names[len(given.gauges) :], *given.gauges, *poses, *commands, *given.actuators)
     system = connect(*_wiring(given, plant_held, wired), _entries(given), outputs)
     return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
+
+
+def pose_controller(controller: System, coordinates: Coordinates, sense: Array | None = None) -> System:
+    """The controller from errors that come back (pose and error inputs together), then from references, to its outputs.
+
+    With the map `sense` (k, c) of loops both are those of the loops, not of the coordinates.
+    """
+    names, known = coordinates.names, controller.input_names
+    entry = np.zeros((2, len(known), len(names)))
+    for kind, signs in (("error", (1.0, 1.0)), ("pose", (-1.0, 0.0)), ("reference", (0.0, 1.0))):
+        for number, name in enumerate(names):
+            if f"{kind}.{name}" in known:
+                entry[:, known.index(f"{kind}.{name}"), number] = signs
+    whole = np.hstack([*entry]) if sense is None else np.hstack([*entry]) @ np.kron(np.eye(2), np.linalg.inv(sense))
+    inputs = tuple(Channel(f"{kind}.{number}", "m") for kind in ("error", "reference") for number in range(len(names)))
+    return replace(controller, B=controller.B @ whole, D=controller.D @ whole, inputs=inputs)
 
 
 def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:

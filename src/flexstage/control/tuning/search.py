@@ -17,14 +17,13 @@ from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import select
 from flexstage.control.tuning.fit import STIFF, Bounds, OneLoop, Squares, descend, keeps, sum_squares
 from flexstage.control.tuning.laws import PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.spec import TuningSpec
-from flexstage.control.tuning.view import View, resonances
+from flexstage.control.tuning.view import View, first_alike, resonances
 
 STABLE = 2.5
 """Modes may be off by so many times the spread before the loop may become unstable."""
@@ -229,7 +228,7 @@ def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: fl
         slow=slow,
         disturbed=_disturbed(seen, own, spec.floor) * weights[:, :, None],
         heard=_heard(seen) * weights,
-        alike=tuple(_first_alike(plants, loop) for loop in range(len(seen.loops.names))),
+        alike=tuple(next(first_alike(np.einsum("vfkk->vfk", plants), loop, _SAME)) for loop in range(len(seen.loops.names))),
         fast=fast,
     )
 
@@ -239,7 +238,7 @@ def last_mode(seen: View) -> float:
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.tuning.view import view
+    >>> from flexstage.control.tuning.view import first_alike, view
     >>> plant = integral_loop().plant
     >>> round(last_mode(view(plant, platform_loops(plant.coordinates), 0.0)), 1) == round(float(plant.frequencies[0]), 1)
     True
@@ -272,7 +271,7 @@ def _disturbed(seen: View, frequencies: Array, floor: Mapping[str, Spectrum]) ->
     names = [f"relative.{name}" for name in seen.loops.coordinates.names]
     if not floor:
         return _DRIFT * np.eye(len(names))[None] / frequencies[:, None, None]
-    moved = resolvent(select(seen.plant.system, list(floor), names)).at(frequencies)
+    moved = select(seen.plant.system, list(floor), names).sweep(frequencies)
     shaken = np.sqrt(np.stack([spectrum.at(frequencies) for spectrum in floor.values()], axis=-1))
     return seen.loops.sense @ moved * shaken[:, None, :]
 
@@ -284,14 +283,6 @@ def _heard(seen: View) -> Array:
     squares = [0.0 if each is None else (each.noise_density or 0.0) ** 2 + each.resolution**2 * step / 6.0 for each in sensors]
     rows = seen.loops.sense @ plant.coordinates.pose
     return np.sqrt(np.sum(rows**2 * np.array(squares), axis=1))
-
-
-def _first_alike(plants: Array, loop: int) -> int:
-    """The first loop that is the same, by itself and beside the others: a symmetric stage has several."""
-    for other in range(loop):
-        if np.max(np.abs(plants[:, :, other, other] - plants[:, :, loop, loop])) < _SAME * np.max(np.abs(plants[:, :, loop, loop])):
-            return other
-    return loop
 
 
 @dataclass(frozen=True, eq=False)

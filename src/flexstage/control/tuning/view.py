@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -12,7 +13,6 @@ from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
 _PLAIN, _PER_DECADE = 400, 60
@@ -68,13 +68,9 @@ class View:
         """The loops' own responses (k,) at one frequency [Hz]."""
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
-    @cached_property
-    def _resolvents(self) -> dict[float, Resolvent]:
-        return {offset: resolvent(system) for offset, system in zip(self.offsets, self.systems, strict=True)}
-
     def driven_at(self, offset: float, frequencies: Array) -> Array:
         """Responses (f, k, n) of the loops' poses to strokes at frequencies [Hz], with the modes by one of the offsets off."""
-        return self.loops.sense @ self._resolvents[offset].at(frequencies)
+        return self.loops.sense @ self.systems[self.offsets.index(offset)].sweep(frequencies)
 
     @cached_property
     def driven(self) -> Array:
@@ -111,10 +107,17 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     """
     if offsets is None:
         offsets = (0.0, -spread, spread) if spread else (0.0,)
-    systems = tuple(_scale_modes(plant, offset) for offset in offsets)
+    systems = tuple(pose_plant(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
-    responses = np.stack([loops.sense @ resolvent(system).at(frequencies) for system in systems])
+    responses = np.stack([loops.sense @ system.sweep(frequencies) for system in systems])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
+
+
+def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
+    """Loops (v, f, k) before this one with the same response, and the loop itself: a symmetric stage has several."""
+    largest = np.max(np.abs(own[..., loop]))
+    yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
+    yield loop
 
 
 def _fastest(plant: Plant) -> float:
@@ -126,16 +129,6 @@ def _fastest(plant: Plant) -> float:
 
 def _highest(plant: Plant) -> float:
     return 20.0 * float(plant.frequencies[-1]) if plant.hardware.rate is None else 0.5 * plant.hardware.rate
-
-
-def _scale_modes(plant: Plant, offset: float) -> System:
-    """The plant with all its modes by a relative offset higher; lags and delays go with them."""
-    given = plant.hardware
-    if given.rate is None:
-        found = pose_plant(plant)
-        return replace(found, A=found.A * (1.0 + offset), B=found.B * (1.0 + offset))
-    slower = replace(given, rate=given.rate / (1.0 + offset), delay=given.delay * (1.0 + offset))
-    return replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
 
 
 def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:

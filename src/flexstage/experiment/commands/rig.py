@@ -10,6 +10,7 @@ import typer
 from flexstage.base.finding import Finding, require
 from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, TIME, VOLTAGE
 from flexstage.experiment.formats.write import write
+from flexstage.experiment.records.record import report_reading
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
 from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, RigSetup, Sensing
@@ -96,8 +97,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     require(values.findings)
     linear = elastic_model(mechanism, model)
     with progress_bar() as shown:
-        test = simulate_test(mechanism, linear, setup, tell=lambda share: shown.share("testing", share))
-        write(output, as_record(test))
+        test = simulate_test(mechanism, linear, setup)
+        write(output, report_reading(as_record(test), lambda stop: shown.share("testing", stop / test.length)))
     show((*list_caveats("rig", mechanism), rig_table(test)))
     announce(f"Wrote {output}")
 

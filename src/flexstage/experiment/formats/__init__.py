@@ -6,13 +6,12 @@ from flexstage.experiment.formats.gcs import GCS
 from flexstage.experiment.formats.hdf import HDF5
 from flexstage.experiment.formats.mat import MAT
 from flexstage.experiment.formats.table import CSV
-from flexstage.experiment.formats.uff import UFF, UFF_ASCII
+from flexstage.experiment.formats.uff import UFF
 
 FORMATS: Register[Format] = Register(
     "flexstage.formats",
     {
         "uff": UFF,
-        "uff-ascii": UFF_ASCII,
         "mat": MAT,
         "hdf5": HDF5,
         "gcs": GCS,

@@ -8,9 +8,9 @@ shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import TypeAlias
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
 from flexstage.experiment.records.clock import TIME_SCALES, Clock, clocked_record, determine_clock
 from flexstage.experiment.records.options import Arrays, Kind, Options, assign, matches, number_names
-from flexstage.experiment.records.record import Channel, ComputedSamples, InMemory, Record, Responses, Role, Samples, rising_problem
+from flexstage.experiment.records.record import Channel, ComputedSamples, Record, Responses, Role, Samples, rising_problem
 from flexstage.experiment.records.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
@@ -41,64 +41,43 @@ _SAVED = {
 _PLAIN = "{0}'s numbers, time [s] and samples (one column a channel)"
 
 
-class Variable(Protocol):
-    """An array of a file: its name (a path), its shape, what the file says beside it, and how it is read."""
-
-    @property
-    def name(self) -> str:
-        """Path of the array within its file."""
-        ...
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of the array, axes of length one included."""
-        ...
-
-    @property
-    def is_complex(self) -> bool:
-        """Whether its numbers are complex."""
-        ...
-
-    @property
-    def attributes(self) -> Mapping[str, Attribute]:
-        """What the file says beside the array."""
-        ...
-
-    def whole(self) -> Array:
-        """The array."""
-        ...
-
-    def samples(self, axis: int) -> Samples:
-        """The array as samples along an axis; the others are its channels, in order."""
-        ...
+Spans: TypeAlias = tuple[tuple[int, int], ...]
+"""Part of an array: start and stop on each of its axes, or nothing for the whole."""
 
 
 @dataclass(frozen=True, eq=False)
-class HeldArray:
-    """An array that is in memory already."""
+class Variable:
+    """An array of a file: its name (a path), its shape, the function that reads a part of it, what the file says beside it."""
 
     name: str
-    values: Array
+    shape: tuple[int, ...]
+    read: Callable[[Spans], Array]
+    is_complex: bool = False
     attributes: Mapping[str, Attribute] = field(default_factory=dict[str, Attribute])
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of the array."""
-        return self.values.shape
-
-    @property
-    def is_complex(self) -> bool:
-        """Whether its numbers are complex."""
-        return np.iscomplexobj(self.values)
 
     def whole(self) -> Array:
         """The array."""
-        return self.values
+        return self.read(())
 
     def samples(self, axis: int) -> Samples:
-        """The array as samples along an axis, as floats."""
-        first = np.moveaxis(self.values, axis, 0)
-        return InMemory(first.reshape(len(first), -1).astype(float))
+        """The array as samples along an axis, left in the file, as floats; the other axes are its channels, in order."""
+
+        def read(start: int, stop: int) -> Array:
+            spans = [(0, length) for length in self.shape]
+            spans[axis] = (start, min(stop, self.shape[axis]))
+            values = np.moveaxis(self.read(tuple(spans)), axis, 0)
+            return values.reshape(len(values), int(np.prod(values.shape[1:]))).astype(float, copy=False)
+
+        return ComputedSamples(self.shape[axis], read)
+
+
+def held_array(name: str, values: Array) -> Variable:
+    """An array that is in memory already.
+
+    >>> held_array("u", np.arange(6.0).reshape(2, 3)).samples(1).read(1, 3).tolist()
+    [[1.0, 4.0], [2.0, 5.0]]
+    """
+    return Variable(name, values.shape, lambda spans: values[tuple(slice(*span) for span in spans)], np.iscomplexobj(values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +106,7 @@ class Contents:
     def number(self, *names: str) -> float | None:
         """The first number of one of these names.
 
-        >>> Contents("a.mat", (HeldArray("data.fs", np.array([[50.0]])),)).number("data.fs")
+        >>> Contents("a.mat", (held_array("data.fs", np.array([[50.0]])),)).number("data.fs")
         50.0
         """
         found: list[Attribute | None] = [float(np.real(each.whole().ravel()[0])) for each in self.find(names) if np.prod(each.shape) == 1]
@@ -144,10 +123,36 @@ class Contents:
         return " ".join(self.texts(name))
 
 
+def describe(what: Record | Responses) -> dict[str, Attribute]:
+    """What the documented form says of a record or of responses beside their arrays, by name.
+
+    >>> describe(Record((Channel("u", "V"),), 50.0, side_by_side([])))["units"]
+    ('V',)
+    """
+    if isinstance(what, Record):
+        said: dict[str, Attribute] = {"format": RECORD_FORM, "rate": float(what.rate), "start": float(what.start)}
+        sides = {"": what.channels}
+        said["roles"] = tuple(channel.role.value for channel in what.channels)
+    else:
+        said = {"format": RESPONSES_FORM, "window": what.window, "averages": float(what.averages or 0)}
+        sides = {"output_": what.outputs, "input_": what.inputs}
+    for side, channels in sides.items():
+        said[f"{side}names"] = tuple(channel.name for channel in channels)
+        said[f"{side}units"] = tuple(channel.unit for channel in channels)
+    return said | {"name": what.name}
+
+
+def response_arrays(responses: Responses) -> dict[str, Array]:
+    """The arrays of responses in the documented form."""
+    coherence = {} if responses.coherence is None else {"coherence": responses.coherence}
+    return {"frequencies": responses.frequencies, "responses": responses.values} | coherence
+
+
 def side_by_side(sources: Sequence[Samples]) -> Samples:
     """Samples of several sources as one: their channels one after another."""
     return ComputedSamples(
-        min(source.length for source in sources), lambda start, stop: np.hstack([source.read(start, stop) for source in sources])
+        min((source.length for source in sources), default=0),
+        lambda start, stop: np.hstack([source.read(start, stop) for source in sources]),
     )
 
 
@@ -167,7 +172,7 @@ def read_arrays(contents: Contents, options: Options) -> tuple[Record | Response
 
     Raises `DesignError` that lists the arrays where there is neither, and with what keeps those there are from being read.
 
-    >>> both = (HeldArray("u", np.zeros((1, 8))), HeldArray("y", np.ones((8, 2))), HeldArray("fs", np.array(4.0)))
+    >>> both = (held_array("u", np.zeros((1, 8))), held_array("y", np.ones((8, 2))), held_array("fs", np.array(4.0)))
     >>> (found,) = read_arrays(Contents("a.mat", both), Options(arrays=Arrays(samples=("u", "y"), rate=("fs",))))
     >>> found.names, found.rate, found.values[0].tolist()
     (('u', 'y1', 'y2'), 4.0, [0.0, 1.0, 1.0])
@@ -216,7 +221,7 @@ def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
 def list_arrays(contents: Contents) -> str:
     """The arrays of a file with their shapes, single numbers with their values, for a message.
 
-    >>> list_arrays(Contents("a.mat", (HeldArray("u", np.zeros((8, 2))), HeldArray("dt", np.array(0.5))), {"note": "run 2"}))
+    >>> list_arrays(Contents("a.mat", (held_array("u", np.zeros((8, 2))), held_array("dt", np.array(0.5))), {"note": "run 2"}))
     'It has u (8, 2), dt = 0.5, note "run 2"'
     """
     arrays = [
@@ -258,9 +263,10 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
         raise refuse(contents.where, f"it has neither times nor a rate. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
-    scale = TIME_SCALES.get(plain_unit(str(time.attributes.get("units", "s"))), 1.0)
-    source = time.samples(int(np.argmax(time.shape)))
-    return determine_clock(source, options, f"{contents.where}: {time.name}", scale=scale, stated=stated)
+    where, unit = f"{contents.where}: {time.name}", plain_unit(" ".join(_texts(time.attributes.get("units", "s"))) or "s")
+    if unit not in TIME_SCALES:
+        raise refuse(where, f'its unit is "{unit}", where a time is expected', "Write s, ms or us, or state the rate (rate)")
+    return determine_clock(time.samples(int(np.argmax(time.shape))), options, where, scale=TIME_SCALES[unit], stated=stated)
 
 
 def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | None, options: Options) -> list[tuple[Variable, int]]:
@@ -342,7 +348,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
         values,
         _coherence(contents, values.shape, options.arrays),
         window=contents.text("window"),
-        averages=int(averages) if averages is not None and averages >= 1.0 else None,
+        averages=int(averages) if averages is not None and 1.0 <= averages < np.inf else None,
         name=contents.text("name"),
         source=contents.where,
     )

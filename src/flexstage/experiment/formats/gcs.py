@@ -9,10 +9,9 @@ from pathlib import Path
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.table.layout import Layout
-from flexstage.experiment.formats.table.values import TableSamples, index_lines
-from flexstage.experiment.records.clock import Clock, clocked_record
-from flexstage.experiment.records.options import FaultTolerance, Options, number_names
-from flexstage.experiment.records.record import Channel, Record, Role
+from flexstage.experiment.formats.table.read import complete_rows, read_record
+from flexstage.experiment.records.options import Options, number_names
+from flexstage.experiment.records.record import Record, Responses, Role
 
 _HEAD = 1 << 18
 _ENTRY = re.compile(r"#\s*(?P<key>[A-Z_]+\d*)\s*=\s*(?P<value>.*?)\s*")
@@ -31,7 +30,7 @@ def is_gcs(start: bytes, _suffix: str) -> bool:
     return start.lstrip().startswith(b"#") and re.search(rb"#\s*DIM\s*=", start) is not None and any(mark in start for mark in _MARKS)
 
 
-def read_gcs(path: Path, options: Options) -> tuple[Record, ...]:
+def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     r"""The record of a GCS array: columns named by NAME0, NAME1, ..., a line every SAMPLE_TIME seconds.
 
     The header (`# KEY = value` up to `# END_HEADER`) is that of the general command set, as the maker's library reads it (PIPython,
@@ -54,10 +53,9 @@ def read_gcs(path: Path, options: Options) -> tuple[Record, ...]:
     names = number_names(said.get(f"NAME{number}") or f"column {number + 1}" for number in range(width))
     require(_column_findings(path, said, width))
     layout = Layout(names, ("",) * width, _separator(path, said), ".", start, len(lines) + 1, "latin-1", ())
-    samples = _samples(path, said, layout, options)
-    channels = [Channel(name, "", _role(name)) for name in names]
-    clock = Clock(options.rate or _rate(path, said), 0.0, ((0, samples.length),))
-    return (clocked_record(channels, samples, clock, options, name=_remark(lines), where=str(path)),)
+    samples = complete_rows(path, layout, options, _whole(path, said, "NDATA") if "NDATA" in said else None, closed=False)
+    about = {"name": _remark(lines), "roles": tuple(_role(name).value for name in names), "rate": options.rate or _rate(path, said)}
+    return read_record(samples, about, options, None)
 
 
 def _header(path: Path) -> tuple[list[str], int]:
@@ -100,22 +98,6 @@ def _rate(path: Path, said: Mapping[str, str]) -> float:
         return 1.0 / step
     found = f'its header says "{text}"' if text else "its header does not say it"
     raise refuse(f"{path}: SAMPLE_TIME", f"{found}, where the time between lines is expected", "State the rate (rate)")
-
-
-def _samples(path: Path, said: Mapping[str, str], layout: Layout, options: Options) -> TableSamples:
-    """All columns; a file with fewer lines than it says is used where allowed, without its last."""
-    lines = index_lines(path, layout.start)
-    wanted = _whole(path, said, "NDATA") if "NDATA" in said else lines.count
-    whole = TableSamples(path, layout, lines, tuple(range(len(layout.names))), lines.count)
-    if lines.count == wanted > 0:
-        return whole
-    if lines.count > wanted:
-        where, what = f"{path}: line {layout.line + wanted}", f"it has {lines.count} lines of numbers, its header says {wanted}"
-        raise refuse(where, what, "Save one answer of the recorder a file")
-    if FaultTolerance.TRUNCATED in options.accept_faults and lines.count > 1:
-        return TableSamples(path, layout, lines, whole.columns, lines.count - 1)
-    advice = f'Save it anew, or accept "truncated" to use the {max(0, lines.count - 1)} samples before'
-    raise refuse(str(path), f"it breaks off: it has {lines.count} of {wanted} samples", advice)
 
 
 def _role(name: str) -> Role:

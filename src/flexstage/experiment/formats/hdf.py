@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.base.storage.files import Attribute, Hdf, HdfArray, hdf, new_hdf
+from flexstage.base.storage.files import Hdf, HdfArray, hdf, new_hdf
 from flexstage.base.storage.store import atomic_write
-from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Variable, read_arrays
+from flexstage.experiment.formats.arrays import Contents, Spans, Variable, describe, read_arrays, response_arrays
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.records.options import Options
-from flexstage.experiment.records.record import ComputedSamples, Record, Responses, Samples
+from flexstage.experiment.records.record import Record, Responses
 
 BLOCK = 65_536
 NUMBERS = frozenset("fiub")
@@ -25,37 +23,14 @@ _FRAME = 1_000_000
 """Bytes of a file beside its numbers, at most: names, units, the tree of chunks."""
 
 
-@dataclass(frozen=True, eq=False)
-class StoredArray:
+def stored_array(file: Hdf, array: HdfArray, *, name: str = "", column: str = "", turned: bool = False) -> Variable:
     """An array in an HDF5 file, or one `column` of a table; `turned` where the file keeps axes in the opposite order, as MAT files do."""
 
-    file: Hdf
-    name: str
-    shape: tuple[int, ...]
-    is_complex: bool
-    attributes: Mapping[str, Attribute] = field(default_factory=dict[str, Attribute])
-    dataset: str = ""
-    column: str = ""
-    turned: bool = False
+    def read(spans: Spans) -> Array:
+        values = file.read(array.name, tuple(reversed(spans)) if turned else spans, column)
+        return values.T if turned else values
 
-    def whole(self) -> Array:
-        """The array."""
-        return self._read(())
-
-    def samples(self, axis: int) -> Samples:
-        """The array as samples along an axis, left in the file, as floats (n, channels)."""
-
-        def read(start: int, stop: int) -> Array:
-            chosen = [(0, length) for length in self.shape]
-            chosen[axis] = (start, min(stop, self.shape[axis]))
-            values = np.moveaxis(self._read(tuple(reversed(chosen)) if self.turned else tuple(chosen)), axis, 0)
-            return values.reshape(len(values), int(np.prod(values.shape[1:]))).astype(float, copy=False)
-
-        return ComputedSamples(self.shape[axis], read)
-
-    def _read(self, spans: tuple[tuple[int, int], ...]) -> Array:
-        values = self.file.read(self.dataset or self.name, spans, self.column)
-        return values.T if self.turned else values
+    return Variable(name or array.name, array.shape[::-1] if turned else array.shape, read, array.kind == "c", array.attributes)
 
 
 def is_hdf(start: bytes, _suffix: str) -> bool:
@@ -86,14 +61,9 @@ def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
     """The array; of a table its columns; nothing for what has no numbers."""
-    name, attributes = array.name, array.attributes
-    if array.kind == "V":
-        return [
-            StoredArray(file, f"{name}/{column}", array.shape, is_complex=False, attributes=attributes, dataset=name, column=column)
-            for column, kind in array.columns.items()
-            if kind in NUMBERS
-        ]
-    return [StoredArray(file, name, array.shape, array.kind == "c", attributes)] if array.kind in (*NUMBERS, "c") else []
+    columns = [column for column, kind in array.columns.items() if kind in NUMBERS] if array.kind == "V" else []
+    whole = [stored_array(file, array)] if array.kind in (*NUMBERS, "c") else []
+    return whole + [stored_array(file, array, name=f"{array.name}/{column}", column=column) for column in columns]
 
 
 def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
@@ -107,46 +77,28 @@ def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_hdf(Path(folder) / "a.h5", in_memory([Channel("S1", "um")], 3.0, np.array([[0.1], [0.2]])))
     ...     with h5py.File(Path(folder) / "a.h5") as file:
-    ...         file["samples"][:, 0].tolist(), file["samples"].attrs["names"].tolist(), float(file.attrs["rate"])
+    ...         file["samples"][:, 0].tolist(), file.attrs["names"].tolist(), float(file.attrs["rate"])
     ([0.1, 0.2], ['S1'], 3.0)
     """
     size = 8 * (what.length + BLOCK) * len(what.channels) if isinstance(what, Record) else 3 * what.values.nbytes
     with atomic_write(path) as place, new_hdf(place, size + _FRAME) as file:
-        if isinstance(what, Record):
-            _write_record(file, what)
-        else:
-            _write_responses(file, what)
+        for name, value in describe(what).items():
+            file.attrs[name] = _texts(value) if isinstance(value, tuple) else value
+        if isinstance(what, Responses):
+            for name, values in response_arrays(what).items():
+                file[name] = values
+            return
+        shape = (what.length, len(what.channels))
+        chunks = (max(1, min(what.length, BLOCK // 4)), shape[1]) if what.length else None
+        samples = file.create_dataset("samples", shape, dtype="<f8", chunks=chunks)
+        for start in range(0, what.length, BLOCK):
+            samples[start : start + BLOCK] = what.samples.read(start, min(start + BLOCK, what.length))
 
 
-def _write_record(file: Any, record: Record) -> None:
-    file.attrs.update({"format": RECORD_FORM, "rate": float(record.rate), "start": float(record.start), "name": record.name})
-    shape = (record.length, len(record.channels))
-    samples = file.create_dataset(
-        "samples", shape, dtype="<f8", chunks=(max(1, min(record.length, BLOCK // 4)), shape[1]) if record.length else None
-    )
-    samples.attrs["names"] = _texts(record.names)
-    samples.attrs["units"] = _texts(channel.unit for channel in record.channels)
-    samples.attrs["roles"] = _texts(channel.role.value for channel in record.channels)
-    for start in range(0, record.length, BLOCK):
-        stop = min(start + BLOCK, record.length)
-        samples[start:stop] = record.samples.read(start, stop)
-
-
-def _write_responses(file: Any, responses: Responses) -> None:
-    file.attrs.update({"format": RESPONSES_FORM, "name": responses.name, "window": responses.window, "averages": responses.averages or 0})
-    for side, channels in (("output", responses.outputs), ("input", responses.inputs)):
-        file.attrs[f"{side}_names"] = _texts(channel.name for channel in channels)
-        file.attrs[f"{side}_units"] = _texts(channel.unit for channel in channels)
-    file["frequencies"] = responses.frequencies
-    file["responses"] = responses.values
-    if responses.coherence is not None:
-        file["coherence"] = responses.coherence
-
-
-def _texts(texts: Iterable[str]) -> Any:
+def _texts(texts: tuple[str, ...]) -> Any:
     import h5py
 
-    return np.array(list(texts), dtype=h5py.string_dtype())
+    return np.array(texts, dtype=h5py.string_dtype())
 
 
 HDF5 = Format((".h5", ".hdf5", ".hdf"), is_hdf, read_hdf, write_hdf)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import scipy
@@ -15,11 +14,11 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.storage.files import Hdf, HdfArray, Opaque, hdf, mat
 from flexstage.base.storage.store import atomic_write
-from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, HeldArray, Variable, read_arrays
+from flexstage.experiment.formats.arrays import Contents, Variable, describe, held_array, read_arrays, response_arrays
 from flexstage.experiment.formats.format import Format
-from flexstage.experiment.formats.hdf import NUMBERS, StoredArray, is_hdf
+from flexstage.experiment.formats.hdf import NUMBERS, is_hdf, stored_array
 from flexstage.experiment.records.options import Options
-from flexstage.experiment.records.record import Channel, Record, Responses
+from flexstage.experiment.records.record import Record, Responses
 
 _LARGEST = 2**31 - 1
 _HEAD = 512
@@ -61,7 +60,7 @@ def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | Opaque]]:
     for name, value in mat(path):
-        yield name, value if isinstance(value, (tuple, Opaque)) else HeldArray(name, value)
+        yield name, value if isinstance(value, (tuple, Opaque)) else held_array(name, value)
 
 
 def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | Opaque]]:
@@ -78,7 +77,7 @@ def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | 
         elif array.attributes.get("MATLAB_class") == "char":
             yield name, _characters(file, array)
         elif array.kind in (*NUMBERS, "c") and not array.attributes.get("MATLAB_empty", 0):
-            yield name, StoredArray(file, name, tuple(reversed(array.shape)), array.kind == "c", dataset=array.name, turned=True)
+            yield name, stored_array(file, array, name=name, turned=True)
 
 
 def _characters(file: Hdf, array: HdfArray) -> tuple[str, ...]:
@@ -100,7 +99,7 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     file cannot be written.
 
     >>> import scipy.io, tempfile
-    >>> from flexstage.experiment.records.record import in_memory
+    >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_mat(Path(folder) / "a.mat", in_memory([Channel("S1", "um")], 3.0, np.array([[0.1], [0.2]])))
     ...     scipy.io.loadmat(Path(folder) / "a.mat")["samples"].tolist()
@@ -110,33 +109,12 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     if size > _LARGEST:
         too_large = f"the record has {size / 1e9:.3g} GB, MAT files of version 5 hold 2.1 GB"
         raise refuse(os.fspath(path), too_large, "Write HDF5 (.h5), which MATLAB reads by h5read")
-    values = {name: _cells(value) if isinstance(value, tuple) else value for name, value in _fields(what)}
+    values = {name: _cells(value) if isinstance(value, tuple) else value for name, value in describe(what).items()}
+    values |= {"samples": what.values} if isinstance(what, Record) else response_arrays(what)
     with atomic_write(path) as place, place.open("wb") as stream:
         scipy.io.savemat(stream, values, oned_as="column")
         stream.seek(0)  # scipy writes the time into the head: the same record is to be the same file
         stream.write(b"MATLAB 5.0 MAT-file, Platform: any".ljust(116))
-
-
-def _fields(what: Record | Responses) -> Iterator[tuple[str, Any]]:
-    """Names and values of a file's variables."""
-    if isinstance(what, Record):
-        yield from {"format": RECORD_FORM, "name": what.name, "rate": float(what.rate), "start": float(what.start)}.items()
-        yield from _channel_fields("", what.channels)
-        yield "roles", tuple(channel.role.value for channel in what.channels)
-        yield "samples", what.values
-        return
-    yield from {"format": RESPONSES_FORM, "name": what.name, "window": what.window, "averages": float(what.averages or 0)}.items()
-    yield from _channel_fields("output_", what.outputs)
-    yield from _channel_fields("input_", what.inputs)
-    yield from {"frequencies": what.frequencies[:, None], "responses": what.values}.items()
-    if what.coherence is not None:
-        yield "coherence", what.coherence
-
-
-def _channel_fields(side: str, channels: Iterable[Channel]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    known = tuple(channels)
-    yield f"{side}names", tuple(channel.name for channel in known)
-    yield f"{side}units", tuple(channel.unit for channel in known)
 
 
 def _cells(texts: tuple[str, ...]) -> Array:

@@ -15,7 +15,7 @@ from flexstage.experiment.records.record import Record, Responses
 def write(path: str | os.PathLike[str], what: Record | Responses, form: str = "") -> None:
     """Write a record or responses, in the form named or that of the file's ending, whole or not at all.
 
-    Forms are `uff` (binary) and `uff-ascii`, `mat` (version 5), `hdf5`, `csv`, and those that other packages offer. Raises `DesignError`
+    Forms are `uff` (binary), `mat` (version 5), `hdf5`, `csv`, and those that other packages offer. Raises `DesignError`
     for other names and endings, for channel names or units the form cannot hold and where the file cannot be written.
 
     >>> import tempfile

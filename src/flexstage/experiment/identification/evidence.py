@@ -5,19 +5,22 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.experiment.identification.outputs.tones import Tone, remove_tones
+from flexstage.experiment.progress import part, report
 from flexstage.experiment.records.record import Channel, Record, Responses, rising_problem
-from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Tell, Window, pool, spectra
+from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Window, pool, spectra
 from flexstage.experiment.spectral.growth import noise_growth
 from flexstage.experiment.spectral.lines import Cells, Lines, block_count, record_lines
 from flexstage.experiment.spectral.smear import SMEARING, Smear
 from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise_density
 
+_Result = TypeVar("_Result")
 _SEGMENTS = 24.0
 _PER_INPUT = 3.0
 _LONGEST, _WHOLE = 32_768, 1 << 20
@@ -81,9 +84,7 @@ class Evidence:
         return np.maximum(np.median(chosen, axis=0), floor) / self.output_scale**2
 
 
-def evidence(
-    what: Record | Responses | Sequence[Record], segments: Segments | None, tell: Tell | None = None, known: Sequence[Spectra] = ()
-) -> Evidence:
+def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, known: Sequence[Spectra] = ()) -> Evidence:
     """The evidence in a record, in several records of one stage, or in an analyser's responses.
 
     Spectra of the records that are `known` already, one a record, are used where their segments are those and no tone is taken out.
@@ -96,19 +97,26 @@ def evidence(
         return _of_responses(what)
     made = (what,) if isinstance(what, Record) else tuple(what)
     require(_findings(made))
-    quiet = (remove_tones(record, _part_progress(tell, index, _PASSES * len(made))) for index, record in enumerate(made))
-    records, tones = zip(*quiet, strict=True)
+    with part(0.0, 1.0 / _PASSES):
+        records, tones = zip(*_each_part(remove_tones, made), strict=True)
     chosen = segments if segments is not None else choose_segments(records)
-    told = (_part_progress(tell, len(records) + index, _PASSES * len(records)) for index in range(len(records)))
-    parts = [
-        each if each is not None and each.segments == chosen and record is before else spectra(record, chosen, progress)
-        for record, before, each, progress in zip(records, made, known or [None] * len(made), told, strict=True)
-    ]
-    together = pool([part.driven([channel.name for channel in part.inputs]) for part in parts])
-    return replace(_of_records(records, together, tell), tones=tuple(itertools.chain(*tones)))
+    usable = {id(record): each for record, each in zip(made, known, strict=False) if each.segments == chosen}
+    with part(1.0 / _PASSES, 2.0 / _PASSES):
+        parts = _each_part(lambda record: usable.get(id(record)) or spectra(record, chosen), records)
+    together = pool([each.driven([channel.name for channel in each.inputs]) for each in parts])
+    return replace(_of_records(records, together), tones=tuple(itertools.chain(*tones)))
 
 
-def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) -> Evidence:
+def _each_part(compute: Callable[[Record], _Result], records: Sequence[Record]) -> list[_Result]:
+    """A computation for every record, each an equal part of the progress."""
+    found: list[_Result] = []
+    for index, record in enumerate(records):
+        with part(index / len(records), (index + 1) / len(records)):
+            found.append(compute(record))
+    return found
+
+
+def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
     first = known.frequencies[1] * _LOWEST_LINES
     band = (float(first), float(_HIGHEST * records[0].rate))
     inside = known.band(*band)
@@ -125,9 +133,11 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
         for index, record in enumerate(records, start=(2 + number) * len(records)):
             kept = record.select([channel.name for channel in record.channels if channel in record.outputs or channel.name in names])
             places = tuple(names.index(channel.name) for channel in kept.inputs)
-            for block in record_lines(kept, places, column, _part_progress(tell, index, _PASSES * len(records)), parts):
+            blocks = block_count(kept, parts)
+            for done, block in enumerate(record_lines(kept, places, column, parts), start=1):
+                report((index + done / blocks) / (_PASSES * len(records)))
                 yield _scale_lines(block, input_scale, output_scale)
-            column += block_count(kept, parts)
+            column += blocks
 
     weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
     weights = weights * np.sqrt(drive / np.max(drive))[:, None] if is_single else weights
@@ -338,9 +348,3 @@ def _findings(records: tuple[Record, ...]) -> list[Finding]:
             what = f"its outputs are {', '.join(sorted(names))}, those of the first {', '.join(sorted(wanted))}"
             found.append(Finding(where, what, "Name outputs alike in all records"))
     return found
-
-
-def _part_progress(tell: Tell | None, index: int, count: int) -> Tell | None:
-    if tell is None:
-        return None
-    return lambda share: tell((index + share) / count)

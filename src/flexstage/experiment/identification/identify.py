@@ -25,7 +25,7 @@ from flexstage.experiment.identification.likelihood import Modal
 from flexstage.experiment.identification.lscf import lscf
 from flexstage.experiment.identification.residues import modal_sum, remainder
 from flexstage.experiment.records.record import Record, Responses
-from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Tell
+from flexstage.experiment.spectral.cross_spectra import Segments, Spectra
 from flexstage.experiment.spectral.lines import edges, gather_cells
 
 _LARGEST = 72
@@ -51,9 +51,7 @@ class Search(CheckedFields):
 
 
 @check_arguments
-def identify(
-    what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None, known: Sequence[Spectra] = ()
-) -> Identified:
+def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), known: Sequence[Spectra] = ()) -> Identified:
     """Natural frequencies, damping, shapes and participations, with 95 % intervals, and whether they are there at all.
 
     `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
@@ -76,14 +74,14 @@ def identify(
     >>> found.frequencies.round(1).tolist(), found.damping.round(3).tolist()
     ([10.0], [0.02])
     """
-    seen = evidence(what, search.segments, tell, known)
+    seen = evidence(what, search.segments, known)
     found = _identify_once(seen, search)
     if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
         return _with_doubts(_without_delay(seen, search, found))
     # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
     records = [what] if isinstance(what, Record) else list(what)
     longer = choose_segments(records, _FEW) if len(found.inputs) > 1 else whole_segment(records)
-    seen = evidence(what, longer, tell)
+    seen = evidence(what, longer)
     again = _identify_once(seen, replace(search, segments=longer))
     return _with_doubts(_without_delay(seen, search, again)) if len(again.frequencies) else found
 

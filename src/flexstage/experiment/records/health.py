@@ -14,7 +14,7 @@ from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.experiment.records.numbers import Numbers, RecordNumbers, explained_share, gather
+from flexstage.experiment.records.numbers import Numbers, RecordNumbers, count_ends, explained_share, gather
 from flexstage.experiment.records.options import FaultTolerance, matches
 from flexstage.experiment.records.record import Channel, Record, Responses, Role, rising_problem
 from flexstage.experiment.records.unit import same_dimension, unit_problem
@@ -147,13 +147,17 @@ def responses_findings(responses: Responses, requirements: RecordRequirements = 
     ]
     frequencies = responses.frequencies
     if (falling := rising_problem(frequencies)) is not None:
-        faults.append(Fault(None, "", Finding(where, falling, "Export each frequency once, from the lowest to the highest")))
+        faults.append(_fault(None, where, "", falling, "Export each frequency once, from the lowest to the highest"))
     elif requirements.highest is not None and requirements.highest > frequencies[-1]:
         what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {requirements.highest:g} Hz"
-        faults.append(Fault(FaultTolerance.SLOW, "", Finding(where, what, 'Measure a wider band, or accept "slow" to use what there is')))
+        faults.append(_fault(FaultTolerance.SLOW, where, "", what, 'Measure a wider band, or accept "slow" to use what there is'))
     if responses.coherence is not None:
         faults += _coherence(responses.coherence, where)
     return faults
+
+
+def _fault(kind: FaultTolerance | None, where: str, channel: str, what: str, advice: str) -> Fault:
+    return Fault(kind, channel, Finding(f"{where}: {channel}" if channel else where, what, advice))
 
 
 def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
@@ -162,112 +166,98 @@ def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
     if outside:
         low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
         what = f"its coherence runs from {low:g} to {high:g}, outside 0 to 1 in {outside} of {coherence.size} values"
-        advice = 'Check what was exported, or accept "clipped" to cut it off there'
-        yield Fault(FaultTolerance.CLIPPED, "", Finding(where, what, advice))
+        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check what was exported, or accept "clipped" to cut it off there')
 
 
 def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
     for channel, numbers in zip(record.channels, found.channels, strict=True):
-        place = f"{where}: {channel.name}"
+        name = channel.name
         if numbers.broken:
-            yield from _broken_samples(record, channel, numbers, place, found.stretch)
-        if numbers.broken < record.length:
-            dead = _dead(record, channel, numbers) or _faint(record, found, channel, numbers)
-            windowed = _force_window(record, channel, numbers)
-            if windowed:
-                yield Fault(FaultTolerance.WINDOWED, channel.name, Finding(place, windowed, _UNWINDOWED))
-            elif dead:
-                yield Fault(
-                    FaultTolerance.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or accept "dead" to leave it out')
-                )
-            else:
-                yield from _clipped(record, channel, numbers, place)
+            yield _broken_samples(record, name, numbers, found.stretch)
+        if numbers.broken == record.length:
+            continue
+        if (windowed := _force_window(record, channel, numbers)) is not None:
+            yield _fault(FaultTolerance.WINDOWED, where, name, windowed, _UNWINDOWED)
+        elif (dead := _dead(record, channel, numbers) or _faint(record, found, channel, numbers)) is not None:
+            yield _fault(FaultTolerance.DEAD, where, name, dead, 'Check cable and range, or accept "dead" to leave it out')
+        elif (clipped := _clipped(record, channel, numbers)) is not None:
+            size = "wider" if clipped.startswith("it is clipped") else "smaller"
+            advice = f'Record with a {size} range, or accept "clipped" to use it as it is'
+            yield _fault(FaultTolerance.CLIPPED, where, name, clipped, advice)
 
 
-def _broken_samples(record: Record, channel: Channel, numbers: Numbers, place: str, stretch: tuple[int, int]) -> Iterator[Fault]:
+def _broken_samples(record: Record, name: str, numbers: Numbers, stretch: tuple[int, int]) -> Fault:
     start, stop = stretch
-    share = numbers.broken / max(1, record.length)
     first = record.start + numbers.first_broken / record.rate
     what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"
-    if share > _BROKEN_SHARE:
-        yield Fault(FaultTolerance.DEAD, channel.name, Finding(place, what, 'Record it anew, or accept "dead" to leave it out'))
-    else:
-        advice = (
-            f'The longest stretch without has {stop - start} samples ({(stop - start) / record.rate:.4g} s): accept "gaps" to use it alone'
-        )
-        yield Fault(FaultTolerance.GAPS, channel.name, Finding(place, what, advice))
+    if numbers.broken > _BROKEN_SHARE * record.length:
+        return _fault(FaultTolerance.DEAD, record.where, name, what, 'Record it anew, or accept "dead" to leave it out')
+    length = f"{stop - start} samples ({(stop - start) / record.rate:.4g} s)"
+    advice = f'The longest stretch without has {length}: accept "gaps" to use it alone'
+    return _fault(FaultTolerance.GAPS, record.where, name, what, advice)
+
+
+def _stands_still(record: Record, numbers: Numbers) -> bool:
+    return numbers.still >= max(_STILL, _STILL_SHARE * record.length)
+
+
+def _with_unit(value: float, channel: Channel) -> str:
+    return f"{value:.6g} {channel.unit}".strip()
 
 
 def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
-    unit = f" {channel.unit}" if channel.unit else ""
     if numbers.low == numbers.high:
-        return "it is zero throughout" if numbers.low == 0.0 else f"it is constant at {numbers.low:.6g}{unit}"
-    if numbers.still >= max(_STILL, _STILL_SHARE * record.length):
-        start = record.start + numbers.still_from / record.rate
-        return (
-            f"it stands still from {start:.6g} s to {start + numbers.still / record.rate:.6g} s, {numbers.still} of {record.length} samples"
-        )
-    return None
+        return "it is zero throughout" if numbers.low == 0.0 else f"it is constant at {_with_unit(numbers.low, channel)}"
+    if not _stands_still(record, numbers):
+        return None
+    start = record.start + numbers.still_from / record.rate
+    stop = start + numbers.still / record.rate
+    return f"it stands still from {start:.6g} s to {stop:.6g} s, {numbers.still} of {record.length} samples"
 
 
 def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | None:
-    """Whether a force is exactly nought after a blow, as analysers make it: what it did then was cut off."""
-    still = numbers.still >= max(_STILL, _STILL_SHARE * record.length) and numbers.low != numbers.high
+    """Whether a force is exactly zero after a blow, as analysers make it: what it did then was cut off."""
     known = channel.unit and unit_problem(channel.unit) is None
     force = same_dimension(channel.unit, "N") if known else matches(channel.name, _HAMMERS)
-    if not still or numbers.still_at != 0.0 or numbers.still_from == 0 or not force or channel.role is Role.OUTPUT:
+    zeros = _stands_still(record, numbers) and numbers.still_at == 0.0 and numbers.still_from > 0 and numbers.low != numbers.high
+    if not zeros or not force or channel.role is Role.OUTPUT:
         return None
-    start = record.start + numbers.still_from / record.rate
-    share, zeros = 100.0 * numbers.still_from / record.length, f"{numbers.still} of {record.length} samples"
-    return f"it looks force-windowed: exact zeros from {start:.6g} s on, at {share:.3g} % of the record, for {zeros}"
+    start, share = record.start + numbers.still_from / record.rate, 100.0 * numbers.still_from / record.length
+    stretch = f"for {numbers.still} of {record.length} samples"
+    return f"it looks force-windowed: exact zeros from {start:.6g} s on, at {share:.3g} % of the record, {stretch}"
 
 
 def _faint(record: Record, found: RecordNumbers, channel: Channel, numbers: Numbers) -> str | None:
     """A channel that is far weaker than all others of its kind."""
     pairs = zip(record.channels, found.channels, strict=True)
-    others = [
-        each.rms
-        for other, each in pairs
-        if other is not channel and (other.unit, other.role) == (channel.unit, channel.role) and each.rms > 0.0
-    ]
+    kind = channel.unit, channel.role
+    others = [each.rms for other, each in pairs if other is not channel and (other.unit, other.role) == kind and each.rms > 0.0]
     if not others or numbers.rms >= _DEAD_BESIDE_OTHERS * float(np.median(others)):
         return None
     return f"its rms is {numbers.rms:.3g} {channel.unit}, that of the others of its kind {float(np.median(others)):.3g} {channel.unit}"
 
 
-def _clipped(record: Record, channel: Channel, numbers: Numbers, place: str) -> Iterator[Fault]:
-    unit = f" {channel.unit}" if channel.unit else ""
+def _clipped(record: Record, channel: Channel, numbers: Numbers) -> str | None:
     if numbers.levels == 1.0 and channel.role is Role.INPUT:
-        return  # a random binary sequence
+        return None  # a random binary sequence
     if 0.0 < numbers.levels < _LEVELS:
-        span = f"{numbers.low:.6g} and {numbers.high:.6g}{unit}"
-        what = f"it has {round(numbers.levels) + 1} levels between {span}: its resolution is too coarse"
-        yield Fault(
-            FaultTolerance.CLIPPED,
-            channel.name,
-            Finding(place, what, 'Record with a smaller range, or accept "clipped" to use it as it is'),
-        )
-        return
-    ends = (
-        ("highest", numbers.at_high if numbers.flat_high else 0, numbers.next_high, numbers.high),
-        ("least", numbers.at_low if numbers.flat_low else 0, numbers.next_low, numbers.low),
-    )
-    for end, at, after, value in ends:
-        if at >= _PILE and at > _PILE_RATIO * after:
-            what = f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {value:.6g}{unit}"
-            yield Fault(
-                FaultTolerance.CLIPPED,
-                channel.name,
-                Finding(place, what, 'Record with a wider range, or accept "clipped" to use it as it is'),
-            )
+        span = f"{numbers.low:.6g} and {_with_unit(numbers.high, channel)}"
+        return f"it has {round(numbers.levels) + 1} levels between {span}: its resolution is too coarse"
+    for end, value, pair, tail in (
+        ("highest", numbers.high, numbers.pairs[1], numbers.highs),
+        ("least", numbers.low, numbers.pairs[0], -numbers.lows),
+    ):
+        at, after = count_ends(tail)
+        if pair == value and at >= _PILE and at > _PILE_RATIO * after:
+            return f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {_with_unit(value, channel)}"
+    return None
 
 
 def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
     for channel in channels:
-        problem = unit_problem(channel.unit)
-        if problem is not None:
+        if (problem := unit_problem(channel.unit)) is not None:
             advice = 'State it (units, by names or patterns, such as "S*=um"), or accept "units" to use the numbers as they are'
-            yield Fault(FaultTolerance.UNITS, channel.name, Finding(f"{where}: {channel.name}", problem, advice))
+            yield _fault(FaultTolerance.UNITS, where, channel.name, problem, advice)
 
 
 def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
@@ -284,7 +274,7 @@ def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fau
         advice = (
             'Drive the inputs with independent noise, or accept "dependent" to leave it out: its effect is then counted with the others'
         )
-        yield Fault(FaultTolerance.DEPENDENT, name, Finding(f"{where}: {name}", what, advice))
+        yield _fault(FaultTolerance.DEPENDENT, where, name, what, advice)
 
 
 def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
@@ -297,21 +287,15 @@ def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iter
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
             advice = 'Say what it is (inputs, outputs), or accept "names" to leave it out'
-            yield Fault(
-                FaultTolerance.NAMES,
-                channel.name,
-                Finding(f"{where}: {channel.name}", "it is neither known as an input nor as an output", advice),
-            )
+            yield _fault(FaultTolerance.NAMES, where, channel.name, "it is neither known as an input nor as an output", advice)
+    if requirements.unrecorded and record.inputs:
+        what = f"{', '.join(each.name for each in record.inputs)}: taken for inputs, where none is said to have been recorded"
+        yield _fault(None, where, "", what, "Name the channels that count (only), or say that inputs were recorded")
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
-        if kind == "input" and requirements.unrecorded:
-            if channels:
-                what = f"{', '.join(each.name for each in channels)}: taken for inputs, where none is said to have been recorded"
-                yield Fault(None, "", Finding(where, what, "Name the channels that count (only), or say that inputs were recorded"))
-            continue
-        if not channels:
+        if not channels and not (requirements.unrecorded and kind == "input"):
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
             other = ", or say what else moved the stage (excitation)" if kind == "input" else ""
-            yield Fault(None, "", Finding(where, what, f"Name the {kind}s ({kind}s), by names or patterns{other}"))
+            yield _fault(None, where, "", what, f"Name the {kind}s ({kind}s), by names or patterns{other}")
     yield from _name_faults(record.inputs, record.outputs, requirements, where)
 
 
@@ -322,33 +306,24 @@ def _name_faults(
     for kind, channels, expected in (("input", inputs, requirements.inputs), ("output", outputs, requirements.outputs)):
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
-            place = f"{where}: {channel.name}"
             if channel.name not in known:
                 advice = f'{suggest_nearest(channel.name, known)}; rename it, or accept "names" to leave it out'
-                yield Fault(FaultTolerance.NAMES, channel.name, Finding(place, f"the stage has no {kind} of this name", advice))
+                yield _fault(FaultTolerance.NAMES, where, channel.name, f"the stage has no {kind} of this name", advice)
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"
-                yield Fault(
-                    FaultTolerance.UNITS,
-                    channel.name,
-                    Finding(place, what, 'State its unit, or accept "units" to use the numbers as they are'),
+                yield _fault(
+                    FaultTolerance.UNITS, where, channel.name, what, 'State its unit, or accept "units" to use the numbers as they are'
                 )
 
 
 def _extent(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
-    if requirements.resolution is not None and record.duration * requirements.resolution < requirements.averages:
-        count = record.duration * requirements.resolution
-        required = f"at a resolution of {requirements.resolution:g} Hz, {requirements.averages} are required"
-        what = f"{record.duration:.4g} s give {count:.3g} averages {required}"
-        coarser = requirements.averages / record.duration
-        yield Fault(
-            FaultTolerance.SHORT,
-            "",
-            Finding(where, what, f'Ask for {coarser:.3g} Hz, record longer, or accept "short" to use fewer averages'),
-        )
-    if requirements.highest is not None and record.rate <= 2.0 * requirements.highest:
-        what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {requirements.highest:g} Hz"
-        advice = (
-            f'Sample at {2.56 * requirements.highest:.4g} Hz or more, or accept "slow" to find what lies below {0.5 * record.rate:g} Hz'
-        )
-        yield Fault(FaultTolerance.SLOW, "", Finding(where, what, advice))
+    resolution, averages, highest = requirements.resolution, requirements.averages, requirements.highest
+    if resolution is not None and record.duration * resolution < averages:
+        required = f"at a resolution of {resolution:g} Hz, {averages} are required"
+        what = f"{record.duration:.4g} s give {record.duration * resolution:.3g} averages {required}"
+        advice = f'Ask for {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
+        yield _fault(FaultTolerance.SHORT, where, "", what, advice)
+    if highest is not None and record.rate <= 2.0 * highest:
+        what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {highest:g} Hz"
+        advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to find what lies below {0.5 * record.rate:g} Hz'
+        yield _fault(FaultTolerance.SLOW, where, "", what, advice)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Record, Role
 
 BLOCK = 1 << 19
@@ -15,31 +16,81 @@ _SEGMENT = 1024
 _KEPT = 2048
 
 
-@dataclass(frozen=True)
+@dataclass
 class Numbers:
-    """What the samples of one channel are like.
+    """What the samples of one channel are like, block by block as they are added.
 
-    `broken` samples are not numbers, the first is number `first_broken`. `rms` is about the mean. `at_low` samples (or more) are equal to
-    the least value, `next_low` to the one above it, `flat_low` says whether two in a row are; so for the highest. `levels` is the range
-    over the smallest step. From sample `still_from` the value stays `still_at` for `still` samples, longer than anywhere else.
+    `broken` of `count` samples are not numbers, the first is number `first_broken`. From sample `still_from` the value stays `still_at` for
+    `still` samples, longer than anywhere else. `lows` and `highs` are enough of the extremes to tell a pile from a tail, `step` is the
+    smallest step but 0, `pairs` are the least and the highest value that two samples in a row have.
     """
 
-    broken: int
-    first_broken: int
-    mean: float
-    rms: float
-    low: float
-    high: float
-    at_low: int
-    next_low: int
-    flat_low: bool
-    at_high: int
-    next_high: int
-    flat_high: bool
-    levels: float
-    still_from: int
-    still: int
-    still_at: float
+    count: int = 0
+    broken: int = 0
+    first_broken: int = -1
+    mean: float = 0.0
+    square: float = 0.0
+    lows: Array = field(default_factory=lambda: np.zeros(0))
+    highs: Array = field(default_factory=lambda: np.zeros(0))
+    pairs: tuple[float, float] = (np.inf, -np.inf)
+    step: float = np.inf
+    still: int = 0
+    still_from: int = 0
+    still_at: float = np.nan
+    _last: float = np.nan
+    _run: int = 0
+
+    def add(self, values: Array) -> None:
+        """Add a block of samples."""
+        finite = np.isfinite(values)
+        held = values[finite]
+        self._add_moments(held)
+        self._add_runs(values)
+        if self.first_broken < 0 and len(held) < len(values):
+            self.first_broken = self.count + int(np.argmin(finite))
+        self.lows, self.highs = _least(np.append(self.lows, held)), -_least(-np.append(self.highs, held))
+        self.count, self.broken = self.count + len(values), self.broken + len(values) - len(held)
+
+    def _add_moments(self, held: Array) -> None:
+        before, total = self.count - self.broken, max(1, self.count - self.broken + len(held))
+        mean = float(np.sum(held)) / max(1, len(held))
+        shift = (mean - self.mean) * bool(len(held))
+        self.square += float(np.sum((held - mean) ** 2)) + shift * before * shift * len(held) / total
+        self.mean += shift * len(held) / total
+
+    def _add_runs(self, values: Array) -> None:
+        steps = np.abs(np.diff(np.append(self._last, values)))
+        equal = values[steps == 0.0]
+        self.pairs = min(self.pairs[0], float(equal.min(initial=np.inf))), max(self.pairs[1], float(equal.max(initial=-np.inf)))
+        moves = np.flatnonzero(~(steps == 0.0))
+        self.step = min(self.step, float(steps[moves][np.isfinite(steps[moves])].min(initial=np.inf)))
+        starts = np.append(-self._run, moves)
+        lengths = np.diff(np.append(starts, len(values)))
+        at = int(np.argmax(lengths))
+        if lengths[at] > self.still:
+            self.still, self.still_from = int(lengths[at]), self.count + int(starts[at])
+            self.still_at = float(values[max(0, int(starts[at]))])
+        self._run, self._last = int(lengths[-1]), float(values[-1])
+
+    @property
+    def rms(self) -> float:
+        """Root mean square about the mean."""
+        return float(np.sqrt(self.square / max(1, self.count - self.broken)))
+
+    @property
+    def low(self) -> float:
+        """The least value."""
+        return float(self.lows.min(initial=np.inf))
+
+    @property
+    def high(self) -> float:
+        """The highest value."""
+        return float(self.highs.max(initial=-np.inf))
+
+    @property
+    def levels(self) -> float:
+        """The range over the smallest step."""
+        return (self.high - self.low) / self.step if np.isfinite(self.step) else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,169 +108,53 @@ def gather(record: Record) -> RecordNumbers:
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> found = gather(in_memory([Channel("S1", "um")], 1.0, np.array([[0.0], [1.0], [1.0], [np.nan]])))
-    >>> found.stretch, found.channels[0].broken, found.channels[0].still, found.channels[0].at_high
-    ((0, 3), 1, 2, 2)
+    >>> found.stretch, found.channels[0].broken, found.channels[0].still, count_ends(found.channels[0].highs)
+    ((0, 3), 1, 2, (2, 1))
     """
-    size = len(record.channels)
     inputs = [number for number, channel in enumerate(record.channels) if channel.role is Role.INPUT]
-    moments, extremes, gaps, spectra = _Moments(size), _Extremes(size), _Gaps(size), _Spectra(len(inputs), record.length)
-    runs = [_Runs() for _ in range(size)]
-    rows = max(1, BLOCK // size // _SEGMENT) * _SEGMENT
+    size = min(_SEGMENT, 1 << (max(2, record.length // (16 * max(1, len(inputs)))).bit_length() - 1))
+    spectra, segments = np.zeros((size // 2 + 1, len(inputs), len(inputs)), dtype=complex), 0
+    channels = tuple(Numbers() for _ in record.channels)
+    seen = begun = 0
+    longest = (0, 0)
     with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
-        for block in record.blocks(rows):
-            finite = np.isfinite(block)
-            moments.add(block, finite)
-            extremes.add(block, finite)
-            gaps.add(finite)
-            spectra.add(block[:, inputs])
-            for run, values in zip(runs, block.T, strict=True):
-                run.add(values)
-    found = tuple(_numbers(column, moments, extremes, gaps, runs[column]) for column in range(size))
-    return RecordNumbers(found, gaps.longest, spectra.sum / max(1, spectra.segments), spectra.segments)
+        for block in record.blocks(max(1, BLOCK // len(channels) // _SEGMENT) * _SEGMENT):
+            for numbers, values in zip(channels, block.T, strict=True):
+                numbers.add(values)
+            stops = np.append(np.flatnonzero(~np.isfinite(block).all(axis=1)), len(block)) + seen
+            starts = np.append(begun, stops[:-1] + 1)
+            stretches = zip(starts.tolist(), stops.tolist(), strict=True)
+            longest = max(longest, *stretches, key=lambda stretch: stretch[1] - stretch[0])
+            seen, begun = seen + len(block), int(starts[-1])
+            if len(inputs) > 1:
+                total, count = _segment_spectra(block[:, inputs], size)
+                spectra, segments = spectra + total, segments + count
+            report(seen / record.length)
+    return RecordNumbers(channels, longest, spectra / max(1, segments), segments)
 
 
-class _Moments:
-    """How many samples are numbers, their mean and the sum of squares about it, a column a channel."""
-
-    def __init__(self, size: int) -> None:
-        self.count = self.mean = self.square = np.zeros(size)
-
-    def add(self, block: Array, finite: Array) -> None:
-        count = finite.sum(axis=0)
-        mean = np.where(finite, block, 0.0).sum(axis=0) / np.maximum(count, 1)
-        square = (np.where(finite, block - mean, 0.0) ** 2).sum(axis=0)
-        total = np.maximum(self.count + count, 1)
-        shift = np.where(count > 0, mean - self.mean, 0.0)
-        self.square = self.square + square + shift**2 * self.count * count / total
-        self.mean = self.mean + shift * count / total
-        self.count = self.count + count
+def _segment_spectra(inputs: Array, size: int) -> tuple[Array, int]:
+    """The sum of cross-spectra of segments with a Hann window, and their number; segments with gaps are left out."""
+    count = len(inputs) // size
+    pieces = inputs[: count * size].reshape(count, size, -1)
+    pieces = pieces[np.isfinite(pieces).all(axis=(1, 2))]
+    window = np.hanning(size + 1)[:-1]
+    lines = np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window[:, None], axis=1)
+    return np.einsum("sfi,sfj->fij", lines.conj(), lines), len(pieces)
 
 
-class _Extremes:
-    """The highest and the least values, enough of them to tell a pile from a tail."""
-
-    def __init__(self, size: int) -> None:
-        self.tops, self.bottoms = np.full((0, size), -np.inf), np.full((0, size), np.inf)
-
-    def add(self, block: Array, finite: Array) -> None:
-        tops = np.concatenate([self.tops, np.where(finite, block, -np.inf)])
-        bottoms = np.concatenate([self.bottoms, np.where(finite, block, np.inf)])
-        kept = min(_KEPT, len(tops))
-        self.tops = np.partition(tops, len(tops) - kept, axis=0)[len(tops) - kept :]
-        self.bottoms = np.partition(bottoms, kept - 1, axis=0)[:kept]
+def _least(values: Array) -> Array:
+    return np.partition(values, _KEPT - 1)[:_KEPT] if len(values) > _KEPT else values
 
 
-class _Gaps:
-    """Samples that are no numbers, the first of each channel, and the longest stretch in which all are."""
+def count_ends(values: Array) -> tuple[int, int]:
+    """How many of the highest values are equal to the highest one, and how many to the next.
 
-    def __init__(self, size: int) -> None:
-        self.broken, self.first = np.zeros(size, dtype=int), np.full(size, -1)
-        self._seen = self._from = 0
-        self._longest = (0, 0)
-
-    def add(self, finite: Array) -> None:
-        broken = (~finite).sum(axis=0)
-        self.first = np.where((self.first < 0) & (broken > 0), np.argmin(finite, axis=0) + self._seen, self.first)
-        self.broken = self.broken + broken
-        for row in np.flatnonzero(~finite.all(axis=1)):
-            self._longest = _longer(self._longest, (self._from, self._seen + int(row)))
-            self._from = self._seen + int(row) + 1
-        self._seen += len(finite)
-
-    @property
-    def longest(self) -> tuple[int, int]:
-        return _longer(self._longest, (self._from, self._seen))
-
-
-def _longer(one: tuple[int, int], other: tuple[int, int]) -> tuple[int, int]:
-    return other if other[1] - other[0] > one[1] - one[0] else one
-
-
-@dataclass
-class _Runs:
-    """Equal values in a row of one channel: the longest run, where and at what; the least and highest of pairs; the smallest step else."""
-
-    longest: int = 0
-    start: int = 0
-    value: float = np.nan
-    pair_low: float = np.inf
-    pair_high: float = -np.inf
-    step: float = np.inf
-    _last: float = np.nan
-    _run: int = 0
-    _seen: int = 0
-
-    def add(self, values: Array) -> None:
-        steps = np.abs(np.diff(np.concatenate([[self._last], values])))
-        pairs = values[steps == 0.0]
-        self.pair_low = min(self.pair_low, float(pairs.min(initial=np.inf)))
-        self.pair_high = max(self.pair_high, float(pairs.max(initial=-np.inf)))
-        moves = np.flatnonzero(~(steps == 0.0))
-        unequal = steps[moves][np.isfinite(steps[moves])]
-        self.step = min(self.step, float(unequal.min(initial=np.inf)))
-        starts = np.concatenate([[-self._run], moves])
-        lengths = np.diff(np.concatenate([starts, [len(values)]]))
-        at = int(np.argmax(lengths))
-        if lengths[at] > self.longest:
-            self.longest, self.start = int(lengths[at]), self._seen + int(starts[at])
-            self.value = float(values[max(0, int(starts[at]))])
-        self._run, self._last, self._seen = int(lengths[-1]), float(values[-1]), self._seen + len(values)
-
-
-class _Spectra:
-    """The sum of cross-spectra of the inputs, by segments with a Hann window; segments with gaps are left out.
-
-    A segment has 1024 samples, in short records so few that 16 segments an input remain.
+    >>> count_ends(np.array([1.0, 3.0, 3.0, 2.0]))
+    (2, 1)
     """
-
-    def __init__(self, inputs: int, length: int) -> None:
-        most = max(2, length // (16 * max(1, inputs)))
-        self._size = min(_SEGMENT, 1 << (most.bit_length() - 1))
-        self.sum: Array = np.zeros((self._size // 2 + 1, inputs, inputs), dtype=complex)
-        self.segments = 0
-
-    def add(self, inputs: Array) -> None:
-        count = len(inputs) // self._size
-        if inputs.shape[1] < 2 or not count:
-            return
-        pieces = inputs[: count * self._size].reshape(count, self._size, -1)
-        pieces = pieces[np.isfinite(pieces).all(axis=(1, 2))]
-        window = np.hanning(self._size + 1)[:-1]
-        lines = np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window[:, None], axis=1)
-        self.sum += np.einsum("sfi,sfj->fij", lines.conj(), lines)
-        self.segments += len(pieces)
-
-
-def _numbers(column: int, moments: _Moments, extremes: _Extremes, gaps: _Gaps, runs: _Runs) -> Numbers:
-    bottoms, tops = extremes.bottoms[:, column], extremes.tops[:, column]
-    low, high = float(bottoms.min(initial=np.inf)), float(tops.max(initial=-np.inf))
-    at_low, next_low = _piles(bottoms)
-    at_high, next_high = _piles(-tops)
-    return Numbers(
-        broken=int(gaps.broken[column]),
-        first_broken=int(gaps.first[column]),
-        mean=float(moments.mean[column]),
-        rms=float(np.sqrt(moments.square[column] / max(1.0, moments.count[column]))),
-        low=low,
-        high=high,
-        at_low=at_low,
-        next_low=next_low,
-        flat_low=runs.pair_low == low,
-        at_high=at_high,
-        next_high=next_high,
-        flat_high=runs.pair_high == high,
-        levels=(high - low) / runs.step if np.isfinite(runs.step) else 0.0,
-        still_from=runs.start,
-        still=runs.longest,
-        still_at=runs.value,
-    )
-
-
-def _piles(values: Array) -> tuple[int, int]:
-    """How often the least value occurs, and the next."""
-    _, counts = np.unique(values[np.isfinite(values)], return_counts=True)
-    first = [int(count) for count in counts[:2]]
-    return first[0] if first else 0, first[1] if len(first) > 1 else 0
+    counts = [*np.unique(values, return_counts=True)[1][::-1].tolist(), 0, 0]
+    return counts[0], counts[1]
 
 
 def explained_share(spectra: Array) -> Array:

@@ -19,7 +19,7 @@ _SPELLINGS = (
     *("g0 g gn gs", "deg degrees", "rad radians", "% percent", "Pa pascals"),
 )
 _WORDS = {word: symbols.split()[0] for symbols in _SPELLINGS for word in symbols.split()[1:]}
-_WORD = re.compile(r"[^\W\d_]+")
+_WORD = re.compile(r"g0\b|[^\W\d_]+")
 _POWER = re.compile(r"(?<=[^\W\d_])(?=[23](?!\d))")
 _FURTHER = ("m/s", "rad/s", "rad/s^2", "A", "C", "W", "J", "N/s", "V/s")
 
@@ -27,8 +27,8 @@ _FURTHER = ("m/s", "rad/s", "rad/s^2", "A", "C", "W", "J", "N/s", "V/s")
 def plain_unit(text: str) -> str:
     """A unit in this package's spelling: words become symbols, `m/s2` a power, brackets go; a lone `g` is the standard gravity.
 
-    >>> [plain_unit(text) for text in ("Volts", "m/s2", "[um]", "NONE", "g", "m/sec^2")]
-    ['V', 'm/s^2', 'um', '', 'g0', 'm/s^2']
+    >>> [plain_unit(text) for text in ("Volts", "m/s2", "[um]", "NONE", "g", "g0", "m/sec^2")]
+    ['V', 'm/s^2', 'um', '', 'g0', 'g0', 'm/s^2']
     """
     text = text.strip()
     if len(text) > 1 and text[0] + text[-1] in ("[]", "()") and not any(sign in text[1:-1] for sign in "[]()"):

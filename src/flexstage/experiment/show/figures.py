@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -39,21 +39,20 @@ def response_matrix_figure(found: Identified) -> Any:
     fine = _fine_lines(found, band)
     fitted = found.response(fine).values if len(found.frequencies) else None
     bins = min(_BINS, max(40, _POINTS // (len(rows) * len(columns))))
+    height = 1.35 if len(columns) > 2 else 2.0
     with style_context():
-        height = 1.35 if len(columns) > 2 else 2.0
         figure = canvas(FULL, 0.75 + height * len(rows))
         margins = Margins(left=0.75, top=0.3, bottom=0.42, across=0.1, down=0.06)
         grid = panels(figure, 2 * len(rows), len(columns), margins, heights=[2.1, 1.0] * len(rows))
+        for row, column in np.ndindex(len(rows), len(columns)):
+            own = None if fitted is None else fitted[:, row, column]
+            _response(grid[2 * row : 2 * row + 2, column], (lines, values[:, row, column]), (fine, own), bins)
         for row in range(len(rows)):
-            for column in range(len(columns)):
-                pair = grid[2 * row : 2 * row + 2, column]
-                own = None if fitted is None else fitted[:, row, column]
-                _magnitude(pair[0], lines, values[:, row, column], fine=fine, fit=own, bins=bins)
-                _phase(pair[1], lines, values[:, row, column], fine=fine, fit=own, bins=bins)
-            _same_scale(grid[2 * row], values[:, row, : len(columns)])
-        _matrix_labels(grid, rows, columns, band)
+            _same_scale(grid[2 * row], np.abs(values[:, row, : len(columns)]))
+        _matrix_labels(grid, rows, columns)
         for axes in grid.flat:
             axes.minorticks_off()
+            axes.set_xlim(*band)
     return figure
 
 
@@ -67,8 +66,7 @@ def density_figure(found: Identified) -> Any:
         for index, channel in enumerate(found.outputs[:LARGEST]):
             x, size = _extremes(lines[inside], np.abs(found.responses.values[inside, index, 0]), 4 * _BINS)
             axes.semilogy(x, size, color=SERIES[index % len(SERIES)], linewidth=0.7, label=channel.name)
-        for frequency in found.frequencies:
-            axes.axvline(float(frequency), color=MUTED, linewidth=0.6, linestyle=":")
+        _mark_modes(axes, found)
         units = {channel.unit for channel in found.outputs}
         axes.set_xlim(*focus(found))
         axes.set_xlabel("frequency [Hz]")
@@ -91,54 +89,47 @@ def focus(found: Identified) -> tuple[float, float]:
     return max(low, _BELOW * float(np.min(found.frequencies))), min(high, _ABOVE * float(np.max(found.frequencies)))
 
 
-def _magnitude(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array | None, bins: int) -> None:
-    x, size = _extremes(lines, np.abs(data), bins)
-    axes.semilogy(x, size, color=_DATA, linewidth=1.6)
-    if fit is not None:
-        axes.semilogy(fine, np.abs(fit), color=_FIT, linewidth=0.8)
-
-
-def _phase(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array | None, bins: int) -> None:
+def _response(pair: Any, data: tuple[Array, Array], fit: tuple[Array, Array | None], bins: int) -> None:
+    """Magnitude and phase, each on an axis of its own; `fit` may have no values."""
+    (upper, lower), (lines, values), (fine, fitted) = pair, data, fit
+    upper.semilogy(*_extremes(lines, np.abs(values), bins), color=_DATA, linewidth=1.6)
     step = max(1, len(lines) // bins)
-    marks = np.rad2deg(np.angle(data[::step]))[:, None] + np.array([-4.0, 4.0, np.nan])  # one path: markers are an element each
-    axes.plot(np.repeat(lines[::step], 3), marks.ravel(), color=_DATA, linewidth=1.5)
-    if fit is not None:
-        angle = np.rad2deg(np.angle(fit))
+    marks = np.rad2deg(np.angle(values[::step]))[:, None] + np.array([-4.0, 4.0, np.nan])  # one path: markers are an element each
+    lower.plot(np.repeat(lines[::step], 3), marks.ravel(), color=_DATA, linewidth=1.5)
+    if fitted is not None:
+        angle = np.rad2deg(np.angle(fitted))
         jumps = np.flatnonzero(np.abs(np.diff(angle)) > 0.5 * _PERIOD) + 1
-        axes.plot(np.insert(fine, jumps, np.nan), np.insert(angle, jumps, np.nan), color=_FIT, linewidth=0.8)
-    axes.set_ylim(-200.0, 200.0)
-    axes.set_yticks([-180.0, 0.0, 180.0])
+        upper.semilogy(fine, np.abs(fitted), color=_FIT, linewidth=0.8)
+        lower.plot(np.insert(fine, jumps, np.nan), np.insert(angle, jumps, np.nan), color=_FIT, linewidth=0.8)
+    lower.set_ylim(-200.0, 200.0)
+    lower.set_yticks([-180.0, 0.0, 180.0])
 
 
-def _same_scale(row: Any, values: Array) -> None:
+def _same_scale(row: Any, sizes: Array) -> None:
     """One scale of magnitudes for all responses of an output, without what is far below the least of them."""
-    sizes = np.abs(values)
-    sizes = sizes[sizes > 0.0]
-    if not sizes.size:
-        return
-    low, high = max(float(np.quantile(sizes, 0.005)), 1e-6 * float(np.max(sizes))), float(np.max(sizes))
-    for axes in row:
-        axes.set_ylim(0.5 * low, 2.5 * high)
+    if np.any(sizes > 0.0):
+        high = float(np.max(sizes))
+        low = max(float(np.quantile(sizes[sizes > 0.0], 0.005)), 1e-6 * high)
+        for axes in row:
+            axes.set_ylim(0.5 * low, 2.5 * high)
 
 
-def _matrix_labels(grid: Any, rows: Sequence[Channel], columns: Sequence[Channel], band: tuple[float, float]) -> None:
+def _matrix_labels(grid: Any, rows: Sequence[Channel], columns: Sequence[Channel]) -> None:
     for column, channel in enumerate(columns):
         grid[0, column].set_title(channel.name, fontsize=7.5)
         grid[-1, column].set_xlabel("frequency [Hz]", fontsize=7.0)
+    units = {each.unit for each in columns}
+    below = units.pop() if len(units) == 1 else ""
     for row, channel in enumerate(rows):
-        units = {each.unit for each in columns}
-        unit = (
-            f" [{to_typography(channel.unit)}/{to_typography(units.pop())}]" if len(units) == 1 and channel.unit and "" not in units else ""
-        )
+        unit = f" [{to_typography(channel.unit)}/{to_typography(below)}]" if channel.unit and below else ""
         for axes, text in zip(grid[2 * row : 2 * row + 2, 0], (f"{channel.name}{unit}", "phase [°]"), strict=True):
             axes.set_ylabel(text, fontsize=6.5)
             axes.yaxis.set_label_coords(-0.62 / (FULL / len(columns)), 0.5)
-    for number, line in enumerate(grid):
-        for index, axes in enumerate(line):
-            axes.tick_params(labelsize=6.0, labelleft=index == 0, labelbottom=number == len(grid) - 1)
-            if number % 2 == 0:
-                _decades(axes)
-            axes.set_xlim(*band)
+        for axes in grid[2 * row]:
+            _decades(axes)
+    for axes in grid.flat:
+        axes.tick_params(labelsize=6.0)
+        axes.label_outer()
 
 
 def _decades(axes: Any) -> None:
@@ -159,21 +150,17 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
     1
     """
     inside = _inside(first.frequencies, band)
-    rows = range(min(LARGEST, len(first.outputs)))
-    with style_context():
-        figure, grid = _grid(len(rows), 1.6, Margins(left=0.6, top=0.5, across=0.45, down=0.4))
-        for row, axes in zip(rows, grid.flat, strict=False):
-            column = int(np.argmax(np.sum(np.abs(first.values[inside, row]) ** 2, axis=0)))
-            for index, each in enumerate((first, *others)):
-                own = _inside(each.frequencies, band)  # estimates may stand on other lines than the first
-                x, size = _extremes(each.frequencies[own], np.abs(each.values[own, row, column]))
-                axes.semilogy(x, size, color=SERIES[index], linewidth=1.6 - 0.5 * index, label=each.name)
-            axes.set_title(f"{first.outputs[row].name} / {first.inputs[column].name}", fontsize=7.5)
-            _decades(axes)
-            axes.set_xlim(*band)
-            axes.tick_params(labelsize=6.5, labelbottom=True)
-        _finish(figure, grid, len(rows))
-    return figure
+    largest = np.argmax(np.sum(np.abs(first.values[inside]) ** 2, axis=0), axis=1)
+
+    def draw(axes: Any, row: int) -> None:
+        for index, each in enumerate((first, *others)):
+            own = _inside(each.frequencies, band)  # estimates may stand on other lines than the first
+            x, size = _extremes(each.frequencies[own], np.abs(each.values[own, row, largest[row]]))
+            axes.semilogy(x, size, color=SERIES[index], linewidth=1.6 - 0.5 * index, label=each.name)
+        _decades(axes)
+
+    titles = [f"{output.name} / {first.inputs[column].name}" for output, column in zip(first.outputs, largest, strict=True)]
+    return _by_output(titles, band, draw, 1.6)
 
 
 def coherence_figure(found: Identified, multiple: Array | None, lines: Array | None = None) -> Any:
@@ -187,27 +174,46 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
     >>> len(coherence_figure(identify(one_mode_record()), None).axes)
     1
     """
-    data = found.responses
-    band = focus(found)
-    inside = _inside(data.frequencies, band)
-    rows = range(min(LARGEST, len(found.outputs)))
+    data, band = found.responses, focus(found)
+    own = data.frequencies if lines is None else lines
+    ordinary = None if data.coherence is None else data.coherence[:, :, :LARGEST]
+
+    def draw(axes: Any, row: int) -> None:
+        for column in range(0 if ordinary is None else ordinary.shape[2]):
+            x, share = _means(data.frequencies, ordinary[:, row, column], band)  # pyright: ignore[reportOptionalSubscript]
+            axes.plot(x, share, color=SERIES[column % len(SERIES)], linewidth=0.7, label=f"with {found.inputs[column].name}")
+        if multiple is not None:
+            axes.plot(*_means(own, multiple[:, row], band), color=INK, linewidth=1.3, label="multiple")
+        axes.set_ylim(0.0, 1.04)
+
+    return _by_output([channel.name for channel in found.outputs], band, draw, 1.25)
+
+
+def _by_output(titles: Sequence[str], band: tuple[float, float], draw: Callable[[Any, int], None], height: float) -> Any:
+    """A figure with a panel so high [in] for each of the first outputs, three abreast; the legend of the first panel stands above all."""
+    count = min(LARGEST, len(titles))
+    across = min(3, count)
+    down = -(-count // across)
     with style_context():
-        figure, grid = _grid(len(rows), 1.25, Margins(left=0.5, top=0.5, across=0.45, down=0.35))
-        for row, axes in zip(rows, grid.flat, strict=False):
-            for column in range(min(LARGEST, len(found.inputs)) if data.coherence is not None else 0):
-                x, share = _means(data.frequencies[inside], data.coherence[inside, row, column])  # pyright: ignore[reportOptionalSubscript]
-                axes.plot(x, share, color=SERIES[column % len(SERIES)], linewidth=0.7, label=f"with {found.inputs[column].name}")
-            if multiple is not None:
-                own = data.frequencies if lines is None else lines
-                shown = _inside(own, band)
-                x, share = _means(own[shown], multiple[shown, row])
-                axes.plot(x, share, color=INK, linewidth=1.3, label="multiple")
-            axes.set_title(found.outputs[row].name, fontsize=7.5)
+        figure = canvas(FULL, 0.75 + height * down)
+        grid = panels(figure, down, across, Margins(left=0.6, top=0.5, across=0.45, down=0.4))
+        for row, axes in enumerate(grid.flat):
+            if row < count:
+                draw(axes, row)
+                axes.set_title(titles[row], fontsize=7.5)
+            axes.set_visible(row < count)
             axes.set_xlim(*band)
-            axes.set_ylim(0.0, 1.04)
-            axes.tick_params(labelsize=6.5)
-        _finish(figure, grid, len(rows))
+            axes.tick_params(labelsize=6.5, labelbottom=True)
+        handles, labels = grid[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="upper left", ncols=7, handlelength=1.2, columnspacing=1.2, borderaxespad=0.2, fontsize=7.0)
+        for axes in grid[-1]:
+            axes.set_xlabel("frequency [Hz]")
     return figure
+
+
+def _mark_modes(axes: Any, found: Identified, label: str | None = None) -> None:
+    for index, frequency in enumerate(found.frequencies.tolist()):
+        axes.axvline(frequency, color=MUTED, linewidth=0.6, linestyle=":", label=None if index else label)
 
 
 def stabilisation_figure(found: Identified) -> Any:
@@ -218,16 +224,15 @@ def stabilisation_figure(found: Identified) -> Any:
     >>> len(stabilisation_figure(identify(one_mode_record())).axes)
     2
     """
-    kinds = ((0, "new", ".", "#b8c1cc", 2.0), (1, "frequency stable", "x", SERIES[1], 2.6), (2, "damping too", "^", SERIES[4], 2.6))
+    kinds = (("new", ".", "#b8c1cc", 2.0), ("frequency stable", "x", SERIES[1], 2.6), ("damping too", "^", SERIES[4], 2.6))
     with style_context():
         figure = canvas(FULL, 3.1)
         axes = panels(figure, 1, 1, Margins(left=0.5, right=0.55, top=0.4))[0, 0]
         _envelope(axes, found)
-        for stable, label, marker, colour, size in (*kinds, (3, "participation too", "o", SERIES[2], 2.6)):
-            x, y = _poles(found, stable)
-            axes.plot(x, y, marker, color=colour, markersize=size, markeredgewidth=0.6, label=label, linestyle="none")
-        for index, frequency in enumerate(found.frequencies):
-            axes.axvline(float(frequency), color=MUTED, linewidth=0.6, linestyle=":", label="mode found" if index == 0 else None)
+        for stable, (label, marker, colour, size) in enumerate((*kinds, ("participation too", "o", SERIES[2], 2.6))):
+            style = {"color": colour, "markersize": size, "markeredgewidth": 0.6, "linestyle": "none"}
+            axes.plot(*_poles(found, stable), marker, label=label, **style)
+        _mark_modes(axes, found, "mode found")
         axes.set_xlim(*focus(found))
         axes.set_xlabel("frequency [Hz]")
         axes.set_ylabel("order")
@@ -235,18 +240,11 @@ def stabilisation_figure(found: Identified) -> Any:
     return figure
 
 
-def _poles(found: Identified, stable: int) -> tuple[Array, Array]:
-    """Frequencies and orders of the poles of one kind within the band."""
-    rows = [
-        (each.frequencies[chosen], each.orders[chosen])
-        for each in found.stabilisation
-        if np.any(chosen := (each.stable == stable) & _inside(each.frequencies, focus(found)))
-    ]
-    if not rows:
-        return np.zeros(0), np.zeros(0)
-    x, y = (np.concatenate(column) for column in zip(*rows, strict=True))
-    step = -(-len(x) // _MANY)
-    return x[::step], y[::step]
+def _poles(found: Identified, stable: int) -> Array:
+    """Frequencies and orders (2, n) of the poles of one kind within the band."""
+    every = np.concatenate([np.stack([each.frequencies, each.orders, each.stable]) for each in found.stabilisation], axis=1)
+    chosen = every[:2, (every[2] == stable) & _inside(every[0], focus(found))]
+    return chosen[:, :: max(1, -(-chosen.shape[1] // _MANY))]
 
 
 def _envelope(axes: Any, found: Identified) -> None:
@@ -287,25 +285,7 @@ def _extremes(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
     return x[kept], y[kept]
 
 
-def _means(x: Array, y: Array) -> tuple[Array, Array]:
-    """A curve averaged over bins."""
-    parts = np.array_split(np.arange(len(x)), min(len(x), 2 * _BINS))
+def _means(x: Array, y: Array, band: tuple[float, float]) -> tuple[Array, Array]:
+    """A curve within a band, averaged over bins."""
+    parts = np.array_split(np.flatnonzero(_inside(x, band)), min(np.sum(_inside(x, band)), 2 * _BINS))
     return np.array([np.mean(x[part]) for part in parts]), np.array([np.mean(y[part]) for part in parts])
-
-
-def _grid(count: int, height: float, margins: Margins) -> tuple[Any, Any]:
-    """A figure with panels so high [in], three abreast."""
-    across = min(3, count)
-    down = -(-count // across)
-    figure = canvas(FULL, 0.75 + height * down)
-    return figure, panels(figure, down, across, margins)
-
-
-def _finish(figure: Any, grid: Any, used: int) -> None:
-    """The legend of the first panel above all, frequencies below; panels beyond those used are not shown."""
-    handles, labels = grid[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper left", ncols=7, handlelength=1.2, columnspacing=1.2, borderaxespad=0.2, fontsize=7.0)
-    for axes in grid[-1]:
-        axes.set_xlabel("frequency [Hz]")
-    for axes in grid.flat[used:]:
-        axes.set_visible(False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Annotated
@@ -14,12 +14,10 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import FREQUENCY
+from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Channel, Record
 
 BATCH = 2_000_000
-
-Tell = Callable[[float], None]
-"""Told the share of the work that is done, 0 to 1."""
 
 
 class Window(Enum):
@@ -89,7 +87,7 @@ class Spectra:
 
 
 @check_arguments
-def spectra(record: Record, segments: Segments, tell: Tell | None = None) -> Spectra:
+def spectra(record: Record, segments: Segments) -> Spectra:
     """Spectra of a record's inputs and outputs: Welch's average of windowed, overlapping segments, each freed of its mean.
 
     Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. Memory does not grow with the record's length. Raises `DesignError` for a record
@@ -107,7 +105,7 @@ def spectra(record: Record, segments: Segments, tell: Tell | None = None) -> Spe
     inputs, outputs = record.inputs, record.outputs
     require(_findings(record, size, outputs))
     chosen = record.select([channel.name for channel in (*inputs, *outputs)])
-    total, averages = _accumulate(chosen, size, segments, tell)
+    total, averages = _accumulate(chosen, size, segments)
     weight = segments.window.samples(size)
     density = total / (averages * record.rate * np.sum(weight**2))
     density[1 : (size + 1) // 2] *= 2.0
@@ -167,7 +165,7 @@ def _hop(size: int, segments: Segments) -> int:
     return max(1, round(size * (1.0 - segments.overlap)))
 
 
-def _accumulate(record: Record, size: int, segments: Segments, tell: Tell | None) -> tuple[Array, int]:
+def _accumulate(record: Record, size: int, segments: Segments) -> tuple[Array, int]:
     """Sum over segments of the outer products (f, c, c) of their transforms, and the number of segments."""
     hop, window = _hop(size, segments), segments.window.samples(size)
     count = len(record.channels)
@@ -182,8 +180,7 @@ def _accumulate(record: Record, size: int, segments: Segments, tell: Tell | None
         lines = np.moveaxis(np.fft.rfft(free * window, axis=-1), -1, 0)
         total += np.swapaxes(lines, 1, 2) @ np.conj(lines)
         averages += len(pieces)
-        if tell is not None:
-            tell(min(1.0, averages * hop / max(1, record.length - size + hop)))
+        report(min(1.0, averages * hop / max(1, record.length - size + hop)))
     return total, averages
 
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.experiment.records.record import Record
-from flexstage.experiment.spectral.cross_spectra import Tell
 
 DEGREE = 7
 _FINENESS = 0.25
@@ -73,7 +72,7 @@ class Cells:
         return replace(self, **{name: getattr(self, name)[chosen] for name in names})
 
 
-def record_lines(record: Record, inputs: tuple[int, ...], first: int, tell: Tell | None = None, least: int = 1) -> Iterator[Lines]:
+def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
     """Transforms of a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), the mean taken out.
 
     There are `least` blocks, or as many as memory asks for.
@@ -97,8 +96,6 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, tell: Tell
             place = (drive, column) if column < len(inputs) else (outputs, column - len(inputs))
             place[0][:, place[1]] = np.fft.rfft(values - np.mean(values)) / np.sqrt(size)
         yield Lines(np.fft.rfftfreq(size, 1.0 / record.rate), drive, outputs, (*inputs, first + part))
-        if tell is not None:
-            tell((part + 1) / parts)
 
 
 def block_count(record: Record, least: int = 1) -> int:

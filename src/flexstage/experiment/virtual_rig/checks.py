@@ -12,12 +12,15 @@ from flexstage.experiment.virtual_rig.inputs import InputQuantity
 from flexstage.experiment.virtual_rig.plan import Plan, drivable_actuators, highest_mode
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.checks.value import number_findings
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 
 _PEAK = 6.0
 """Peaks of Gaussian noise over its rms: passed twice in 1e9 samples."""
 _FEWEST = 16
+_HIGHEST_ORDER = 20
 _MOST = 2**40
 
 
@@ -28,39 +31,33 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     >>> from flexstage.models.mapped import mapped
     >>> stage = double_triangle()
     >>> [str(each) for each in setup_findings(stage, mapped(stage), RigSetup(seconds=0.0))]
-    ['seconds: the test is to last 0 s. Give a positive time.']
+    ['seconds: found 0 s, which is not greater than 0 s. Write for example "0.1 s".']
     """
     if model.stiffness_matrix.ndim > 2:
         yield Finding("stage", "it is a batch of designs", "Test one design at a time")
         return
+    for address, value, node in node_of(RigSetup).numbers(setup):
+        yield from number_findings(address, value, node)
     yield from _clock_findings(mechanism, model, setup)
     yield from _channel_findings(mechanism, model, setup)
-    yield from _drive_findings(setup)
-    yield from _electric_findings(setup)
-    sensing = setup.sensing
-    for where, value in (("gauge noise", sensing.density), ("resolution", sensing.resolution), ("drift", sensing.drift)):
-        if value is not None and not 0.0 <= value < np.inf:
-            yield Finding(where, f"it is {value:g} m", "Give a number of 0 or more")
-    if not 0.0 <= setup.delay < np.inf:
-        yield Finding("delay", f"it is {setup.delay:g} s", "Give a time of 0 or more")
+    drive, amplifier, order = setup.drive, setup.amplifier, setup.filter.order
+    if drive.stroke is not None and drive.voltage is not None:
+        yield Finding("drive", "its rms is given as a stroke and as a voltage", "Give one of them")
+    if drive.band is not None and not drive.band[0] < drive.band[1]:
+        yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Give 0 <= low < high in Hz")
+    if amplifier.bandwidth is not None and amplifier.resistance is not None:
+        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
+    if not 0 <= order <= _HIGHEST_ORDER:
+        yield Finding("filter", f"its order is {order}", f"Give an order from 0 (none) to {_HIGHEST_ORDER}")
 
 
 def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
-    if not 0.0 < setup.seconds < np.inf:
-        yield Finding("seconds", f"the test is to last {setup.seconds:g} s", "Give a positive time")
     if setup.seed < 0:
         yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
-    if setup.rate is None:
-        return
     highest = highest_mode(mechanism, model)
-    if not 0.0 < setup.rate < np.inf:
-        yield Finding("rate", f"the sampling rate is {setup.rate:g} Hz", "Give a positive rate")
-    elif setup.rate < 2.0 * highest:
+    if setup.rate is not None and 0.0 < setup.rate < 2.0 * highest:
         what = f"the sampling rate of {setup.rate:g} Hz is below twice the highest platform mode, {highest:.4g} Hz"
         yield Finding("rate", what, f"Sample at {2.0 * highest:.4g} Hz at least, better at {10.0 * highest:.0f} Hz")
-    elif setup.seconds > 0.0 and not _FEWEST <= setup.seconds * setup.rate < _MOST:
-        what = f"{setup.seconds:g} s at {setup.rate:g} Hz are {setup.seconds * setup.rate:.3g} samples"
-        yield Finding("seconds", what, f"Record between {_FEWEST} and {_MOST:.2g} samples")
 
 
 def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
@@ -77,30 +74,6 @@ def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup)
             yield Finding(f"actuator {name}", f"it is named {asked.count(name)} times", "Name it once")
     if not expand(mechanism).gauges:
         yield Finding("gauges", "the stage has no gauge: nothing would be recorded", "State gauges in the design")
-
-
-def _drive_findings(setup: RigSetup) -> Iterator[Finding]:
-    drive = setup.drive
-    if drive.stroke is not None and drive.voltage is not None:
-        yield Finding("drive", "its rms is given as a stroke and as a voltage", "Give one of them")
-    for value, unit in ((drive.stroke, "m"), (drive.voltage, "V")):
-        if value is not None and not 0.0 < value < np.inf:
-            yield Finding("drive", f"its rms is {value:g} {unit}", "Give a positive one")
-    if drive.band is not None and not 0.0 <= drive.band[0] < drive.band[1] < np.inf:
-        yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Give 0 <= low < high in Hz")
-
-
-def _electric_findings(setup: RigSetup) -> Iterator[Finding]:
-    amplifier, anti_alias = setup.amplifier, setup.filter
-    if amplifier.bandwidth is not None and amplifier.resistance is not None:
-        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
-    for value, what in ((amplifier.bandwidth, "bandwidth"), (amplifier.resistance, "resistance"), (amplifier.current, "current")):
-        if value is not None and not 0.0 < value < np.inf:
-            yield Finding("amplifier", f"its {what} is {value:g}", "Give a positive one")
-    if not 0 <= anti_alias.order <= 20:
-        yield Finding("filter", f"its order is {anti_alias.order}", "Give an order from 0 (none) to 20")
-    if anti_alias.corner is not None and not 0.0 < anti_alias.corner < np.inf:
-        yield Finding("filter", f"its corner is {anti_alias.corner:g} Hz", "Give a positive frequency")
 
 
 def plan_findings(plan: Plan) -> Iterator[Finding]:

@@ -7,7 +7,6 @@ import numpy as np
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import require
 from flexstage.experiment.records.record import Channel, Record, Role
-from flexstage.experiment.spectral.cross_spectra import Tell
 from flexstage.experiment.virtual_rig.chain import chain
 from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
 from flexstage.experiment.virtual_rig.inputs import InputQuantity
@@ -22,14 +21,14 @@ _MICROMETRE = 1e6
 
 
 @check_arguments
-def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None) -> Record:
+def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Record:
     """The record of a virtual test: strokes or voltages in, gauges out, by name and with units.
 
     `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` instead of the model's own. Each driven actuator has
     band-limited Gaussian noise, through the amplifier 1/(1 + j f/f_a); gauges read the stage's motion through their own lag, with noise,
     through the anti-alias filter, with drift, in steps. The test has run for long when the record begins. Strokes are free strokes around
     the bias. The stage is taken as linear; its continuous response to the noise is exact, structural damping taken as equivalent modal
-    ratios (the record's name says so). Samples are computed where they are read, in blocks, `tell` told the share that is done; the same
+    ratios (the record's name says so). Samples are computed where they are read, in blocks; the same
     set-up gives the same samples.
 
     Raises `DesignError` with all findings: no time, no rate or one below twice the highest platform mode, unknown actuators, no gauges,
@@ -43,12 +42,10 @@ def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: D
     >>> record.length, [f"{each.name} {each.unit}" for each in record.channels][:2], [each.name for each in record.outputs][:2]
     (4096, ['B1 um', 'B2 um'], ['S1', 'S2'])
     """
-    return as_record(simulate_test(mechanism, model, setup, damping=damping, tell=tell))
+    return as_record(simulate_test(mechanism, model, setup, damping=damping))
 
 
-def simulate_test(
-    mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None
-) -> Simulated:
+def simulate_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Simulated:
     """The test behind a record of `rig`: its plan, its chain with the rms values to expect, and its samples. Raises as `rig` does.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -65,7 +62,7 @@ def simulate_test(
     require(range_findings(plan, found))
     scale = plan.volts if setup.input_quantity is InputQuantity.VOLTAGE else np.full(len(plan.actuators), _MICROMETRE)
     source = f"seed {setup.seed}; {found.note}; {mechanism.name or 'stage'}; {model.provenance}"  # forms cut names: what matters first
-    return Simulated(plan, found, scale, _MICROMETRE, source, tell)
+    return Simulated(plan, found, scale, _MICROMETRE, source)
 
 
 def as_record(test: Simulated) -> Record:

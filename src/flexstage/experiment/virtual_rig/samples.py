@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.spectral.cross_spectra import Tell
 from flexstage.experiment.virtual_rig.chain import Chain
 from flexstage.experiment.virtual_rig.noise import Stream, walk, white
 from flexstage.experiment.virtual_rig.plan import Plan
@@ -20,7 +19,7 @@ class Simulated:
     """Samples (n, inputs + outputs) in the record's units, computed in blocks; every block by itself, so that any can be read.
 
     `input_scale` (m,) and `output_scale` lead from metres to the record's units. Short records are kept once computed, of long ones the
-    last block. `tell`, if given, is told the share of the record computed, after each block.
+    last block.
     """
 
     plan: Plan
@@ -28,7 +27,6 @@ class Simulated:
     input_scale: Array
     output_scale: float
     source: str = ""
-    tell: Tell | None = None
     _kept: dict[int, Array] = field(default_factory=dict[int, Array], repr=False)
 
     @property
@@ -65,8 +63,6 @@ class Simulated:
             if self.length * found.shape[1] > _HELD:
                 self._kept.clear()
             self._kept[number] = found
-            if self.tell is not None:
-                self.tell(min(1.0, (number + 1) * self.block / self.length))
         return self._kept[number]
 
     def _compute_block(self, number: int) -> Array:

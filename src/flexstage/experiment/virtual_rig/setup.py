@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from flexstage.base.arguments import CheckedFields
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, TIME, VOLTAGE
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.parts.amplifier import Amplifier
 
@@ -18,9 +20,9 @@ class NoiseDrive(CheckedFields):
     (absent: 0 to 0.4 times the sampling rate). `actuators` names those that are driven (absent: all); only they are recorded.
     """
 
-    stroke: float | None = None
-    voltage: float | None = None
-    band: tuple[float, float] | None = None
+    stroke: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
+    voltage: Annotated[float, VOLTAGE, POSITIVE] | None = None
+    band: tuple[Annotated[float, FREQUENCY, NOT_NEGATIVE], Annotated[float, FREQUENCY, POSITIVE]] | None = None
     actuators: tuple[str, ...] | None = None
 
 
@@ -29,7 +31,7 @@ class AntiAlias(CheckedFields):
     """Butterworth filter of every recorded analogue channel: `order` (0: none) and `corner` [Hz] (absent: 0.4 times the sampling rate)."""
 
     order: int = 8
-    corner: float | None = None
+    corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,9 @@ class Sensing(CheckedFields):
     standard deviation after a minute [m]. They are those of displacement gauges: gauges of rotations have what they state, and no drift.
     """
 
-    density: float | None = None
-    resolution: float | None = None
-    drift: float = 0.0
+    density: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
+    resolution: Annotated[float, DISPLACEMENT, NOT_NEGATIVE] | None = None
+    drift: Annotated[float, DISPLACEMENT, NOT_NEGATIVE] = 0.0
 
 
 @dataclass(frozen=True)
@@ -57,8 +59,8 @@ class RigSetup(CheckedFields):
     8
     """
 
-    seconds: float
-    rate: float | None = None
+    seconds: Annotated[float, TIME, POSITIVE]
+    rate: Annotated[float, FREQUENCY, POSITIVE] | None = None
     seed: int = 0
     drive: NoiseDrive = field(default_factory=NoiseDrive)
     amplifier: Amplifier = field(default_factory=Amplifier)
@@ -66,4 +68,4 @@ class RigSetup(CheckedFields):
     sensing: Sensing = field(default_factory=Sensing)
     input_signal: InputSignal = InputSignal.MONITOR
     input_quantity: InputQuantity = InputQuantity.STROKE
-    delay: float = 0.0
+    delay: Annotated[float, TIME, NOT_NEGATIVE] = 0.0

@@ -80,9 +80,10 @@ def _is_whole(mechanism: Mechanism, name: str) -> bool:
 
 def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
     """Whether the steps say where a copy or a gauge stands."""
-    gauges = [name for key in posed(mechanism.gauges) for name in copy_names(key)]
-    owners = [*unit_of_copy(mechanism), *gauges]
-    if steps[0] not in owners or len(steps) < 2 or (steps[1] not in MISALIGNED and completions(mechanism, steps[0])):
+    if len(steps) < 2 or (steps[1] not in MISALIGNED and has_member(mechanism, steps[0])):
+        return False
+    owners = [*unit_of_copy(mechanism), *(name for key in posed(mechanism.gauges) for name in copy_names(key))]
+    if steps[0] not in owners or (steps[1] not in MISALIGNED and completions(mechanism, steps[0])):
         return False
     if owners.count(steps[0]) > 1:
         raise refuse(address, f'"{steps[0]}" is a copy of a unit and a gauge', "Rename one of them")

@@ -12,14 +12,12 @@ from flexstage.mechanism.assembly.likeness import drawn_units, likeness_findings
 from flexstage.mechanism.assembly.pattern import copy_names
 from flexstage.mechanism.assembly.sight import gauge_findings
 from flexstage.mechanism.grammar.grammar import RESERVED
-from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit, every_body, posed
+from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NAMED, NOT_GROWING, PLATFORM, Link, Mechanism, Unit, every_body, posed
 from flexstage.parts.body import Body, owner_of
-from flexstage.parts.compliance_matrix import ComplianceMatrix
 
 MOST_COPIES = 360
 _LONGEST = 60
 _RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
-_NAMED = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
 
 
 def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -32,7 +30,7 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
     yield from _bodies(mechanism)
     yield from _owners(mechanism)
     yield from unknown_names(mechanism)
-    yield from _others(mechanism)
+    yield from _check_known("ground", "material", mechanism.ground, (*mechanism.materials, NOT_GROWING))
     yield from likeness_findings(mechanism)
     yield from _check_placement(mechanism)
     yield from _clashes(mechanism)
@@ -77,7 +75,7 @@ def _range_fault(where: str, key: str) -> Finding | None:
 
 
 def _spelling(mechanism: Mechanism) -> Iterator[Finding]:
-    tables: dict[str, Iterable[str]] = {section: getattr(mechanism, section) for section in _NAMED}
+    tables: dict[str, Iterable[str]] = {section: getattr(mechanism, section) for section in NAMED}
     for name, unit in mechanism.units.items():
         tables[f"units.{name}.bodies"], tables[f"units.{name}.links"] = unit.bodies, unit.links
     for where, body in every_body(mechanism):
@@ -124,13 +122,6 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
         for name in drawn.bodies:
             if name == GROUND or (name in mechanism.bodies and "/" not in unit):
                 yield Finding(f"units.{unit}.bodies.{name}", f'the stage itself has a body "{name}"', "Give the unit's body another name")
-
-
-def _others(mechanism: Mechanism) -> Iterator[Finding]:
-    for name, part in mechanism.parts.items():
-        if isinstance(part, ComplianceMatrix):
-            yield from _check_known(f"parts.{name}.replaces", "part", part.replaces or None, mechanism.parts)
-    yield from _check_known("ground", "material", mechanism.ground, (*mechanism.materials, NOT_GROWING))
 
 
 def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import scipy
 
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.models.linear.elimination import unlike
 from flexstage.models.linear.large import lowest
 from flexstage.models.linear.model import LinearModel
@@ -51,7 +51,7 @@ def eigen(model: LinearModel) -> Eigen:
     return _cached(model)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _cached(model: LinearModel) -> Eigen:
     """Result of one design, cached for further calls with the same model: modes, response frequencies, response."""
     return _solve(model)

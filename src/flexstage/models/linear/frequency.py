@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.processes.memory import require_memory
 from flexstage.base.record import INNER, VIEW, Axes, Called
@@ -23,8 +23,7 @@ from flexstage.models.linear.port import Ports
 _CHUNK = 4_000_000
 
 
-@dataclass(frozen=True, eq=False)
-class Response(InNotebook):
+class Response(Result):
     """Frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
 
     `frequencies` (f,) in Hz; `outputs` and `inputs` have names and units; the unit of an entry is output unit / input unit. Batch axes

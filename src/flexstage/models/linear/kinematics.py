@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, join_findings, refuse
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.record import INNER, VIEW, Called, Heading, Layout
 from flexstage.base.units.quantity import LENGTH
@@ -38,8 +38,7 @@ class Redundant:
     constraints: Annotated[tuple[str, ...], Heading("locked DOFs, one of them superfluous")]
 
 
-@dataclass(frozen=True, eq=False)
-class Kinematics(InNotebook):
+class Kinematics(Result):
     """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
 
     The platform twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).

@@ -66,9 +66,21 @@ class Quadratic:
         """Build from operators (r, n) and laws (r, r)."""
         return Quadratic(as_csr(operators, size), block_diagonal(laws))
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns, (n, n)."""
+        return self.rows.shape[1], self.rows.shape[1]
+
     def __matmul__(self, motion: Array) -> Array:
         """Multiply G^T k G by a motion (n, k), via the strains."""
         return self.rows.T @ (self.law @ (self.rows @ motion))
+
+    def __add__(self, other: Quadratic) -> Quadratic:
+        rows = scipy.sparse.vstack([self.rows, other.rows], format="csr")
+        return Quadratic(rows, scipy.sparse.block_diag([self.law, other.law], format="csr"))
+
+    def __rmul__(self, factor: float) -> Quadratic:
+        return Quadratic(self.rows, factor * self.law)
 
     @cached_property
     def matrix(self) -> Any:

@@ -13,6 +13,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.base.processes.native import kernel_library
+from flexstage.base.session import SESSION
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import gauss
 from flexstage.models.nonlinear.graph import OtherTerms
@@ -84,7 +85,7 @@ def kernel() -> ctypes.CDLL | None:
     return library
 
 
-@functools.lru_cache(maxsize=64)
+@SESSION.keep(64)
 def tables(model: Nonlinear) -> Tables | None:
     """Build the kernel tables of a stage, or return `None` if the kernel does not support it.
 

@@ -106,12 +106,6 @@ class State:
         loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
         return State(self.model, loads, hold, pose, (), status, iterations, residual, reached, self.held)
 
-    def some(self, cases: Array) -> State:
-        """Select some cases by their numbers, on one axis."""
-        status, iterations, residual, reached = (getattr(self, name).ravel()[cases] for name in RESULT_FIELDS)
-        loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
-        return State(self.model, loads, hold, pose, (len(cases),), status, iterations, residual, reached, self.held)
-
     def place(self, name: str) -> tuple[int, Array]:
         """Number of a body, and nominal arm of its reference or of a named point on it."""
         return place(self.model, name)
@@ -175,8 +169,8 @@ def equilibrium(
     Every case starts from the nominal position, or from `start`, under its whole load. If that fails, the load grows in steps, then by arc
     length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
-    From the nominal position, a state is also refused if it is unstable or not the continuation of the unloaded stage, as all loads and
-    fixed coordinates grow together. `options` with `past` limits or without `arcs` permit such states.
+    A stable state from the nominal position is also NaN if it does not continue the unloaded stage, as all loads and fixed coordinates
+    grow together. `options` with `past` limits or without `arcs` permit such states.
 
     Raises `DesignError` for names that the stage does not have.
 

@@ -6,13 +6,13 @@ forces are then wrong, as those of displacement elements.
 
 from __future__ import annotations
 
-import functools
 from collections import deque
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.models.nonlinear.elements.element import shape
 from flexstage.models.nonlinear.graph import flexure_weight
 from flexstage.models.nonlinear.stage import Nonlinear
@@ -29,7 +29,7 @@ class Step:
     start: bool
 
 
-@functools.lru_cache(maxsize=16)
+@SESSION.keep(16)
 def tree(model: Nonlinear) -> tuple[Step, ...]:
     """Return the flexures that reach bodies from the ground, nearest first; bodies beyond other links are not reached.
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -14,19 +16,15 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.storage.files import Attribute
 from flexstage.base.units.dimension import dimension_of
-from flexstage.experiment.formats.arrays import Contents, HeldArray, complex_of, read_arrays
+from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Variable, complex_of, held_array, read_arrays
 from flexstage.experiment.formats.table.layout import Layout, read_layout
-from flexstage.experiment.formats.table.values import TableSamples, index_lines
-from flexstage.experiment.records.clock import TIME_SCALES, Clock, clocked_record, determine_clock
+from flexstage.experiment.formats.table.values import TableSamples, index_table
 from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, matches
-from flexstage.experiment.records.record import Channel, Record, Responses, Role
+from flexstage.experiment.records.record import Record, Responses
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
-_FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
-OWN = re.compile(rf"flexstage record; rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s; samples (?P<count>\d+)")
-"""The comment that heads records written here: what times of a column do not say to the bit."""
-OWN_RESPONSES = re.compile(r"flexstage responses; outputs \d+; inputs \d+; averages (?P<averages>\d+)")
-SAYING = {"name": "name: ", "roles": "roles: ", "window": "window: ", "inputs": "inputs: ", "outputs": "outputs: "}
+OWN = "flexstage "
+"""What begins the comment of files written here: a JSON object of what the documented form says beside the arrays."""
 _PART = re.compile(r"(?:(?P<name>.+?)[ _])?(?P<part>re|im|coherence|mag|magnitude|amplitude|gain|phase)", re.IGNORECASE)
 _MAGNITUDES = ("mag", "amplitude", "gain")
 _RECTANGULAR, _POLAR = ("re", "im"), ("magnitude", "phase")
@@ -51,15 +49,57 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     ...     found.rate, [channel.unit for channel in found.inputs], found.values.tolist()
     (2.0, ['V'], [[1.0, 10.0], [2.0, 20.0], [3.0, 30.0]])
     """
-    layout = read_layout(path)
-    samples = _samples(path, layout, options)
-    require(_unknown_names(path, layout, options.arrays))
-    own = next(filter(None, map(OWN_RESPONSES.match, layout.comments)), None)
-    is_stated = options.arrays.frequencies != Arrays().frequencies
-    is_record = any(map(OWN.match, layout.comments)) or (not is_stated and _column(layout, options.arrays.time) is not None)
-    if own or (not is_record and _column(layout, options.arrays.frequencies) is not None):
-        return _responses(path, layout, samples, options, own)
-    return (_record(path, layout, samples, options),)
+    layout, arrays = read_layout(path), options.arrays
+    said = _said(layout)
+    own = Contents(str(path), (), said)
+    length = own.number("length")
+    samples = complete_rows(path, layout, options, None if length is None else int(length), closed=True)
+    require(_unknown_names(path, layout, arrays))
+    time, lines = _column(layout, arrays.time), _column(layout, arrays.frequencies)
+    is_stated = arrays.frequencies != Arrays().frequencies
+    if own.text("format") == RESPONSES_FORM:
+        return read_arrays(_own_responses(own, layout, samples), replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
+    if lines is not None and own.text("format") != RECORD_FORM and (is_stated or time is None):
+        return read_arrays(_responses(path, layout, samples, options, lines), replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
+    if time is None and not options.rate and "rate" not in said:
+        what = f"none of its columns is called time: {', '.join(layout.names[:12])}"
+        raise refuse(str(path), what, 'Say which has the times (array "time=..."), or state the rate (rate)')
+    return read_record(samples, said, options, time)
+
+
+def read_record(samples: TableSamples, said: Mapping[str, Attribute], options: Options, time: int | None) -> tuple[Record | Responses, ...]:
+    """The record in all columns of a table but that of the times."""
+    layout = samples.layout
+    columns = tuple(number for number in range(len(layout.names)) if number != time)
+    texts: dict[str, Attribute] = {kind: tuple(getattr(layout, kind)[number] for number in columns) for kind in ("names", "units")}
+    roles = said.get("roles", ())
+    said = said if isinstance(roles, tuple) and len(roles) == len(columns) else {**said, "roles": ()}  # columns may have been added
+    variables = [_columns("samples", samples, columns, texts)]
+    if time is not None:
+        variables.append(_columns(layout.names[time], samples, (time,), {"units": layout.units[time]}))
+    arrays = Arrays(time=() if time is None else (layout.names[time],))
+    return read_arrays(Contents(str(samples.path), tuple(variables), said), replace(options, kind=Kind.RECORD, arrays=arrays))
+
+
+def _columns(name: str, samples: TableSamples, columns: tuple[int, ...], attributes: Mapping[str, Attribute]) -> Variable:
+    chosen = replace(samples, columns=columns)
+    return Variable(name, (samples.length, len(columns)), lambda spans: chosen.read(*spans[0]), attributes=attributes)
+
+
+def _said(layout: Layout) -> dict[str, Attribute]:
+    """What the comment of a file written here says; only what is of a kind that it may be, since files are changed by hand."""
+    try:
+        found = json.loads(next((line.removeprefix(OWN) for line in layout.comments if line.startswith(OWN)), "{}"))
+    except ValueError:
+        return {}
+    listed = {name: tuple(value) if isinstance(value, list) else value for name, value in found.items()} if isinstance(found, dict) else {}
+    return {name: value for name, value in listed.items() if _is_attribute(value)}
+
+
+def _is_attribute(value: Any) -> TypeGuard[Attribute]:
+    if isinstance(value, tuple):
+        return all(isinstance(each, str) for each in value)
+    return isinstance(value, str) or (isinstance(value, float) and math.isfinite(value))
 
 
 def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Finding]:
@@ -76,21 +116,25 @@ def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
     return next((number for number, name in spelt if matches(name, names)), None)
 
 
-def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
-    """All columns; a last line that is cut short is left out where allowed."""
-    lines = index_lines(path, layout.start)
-    whole = TableSamples(path, layout, lines, tuple(range(len(layout.names))), lines.count)
-    own = next(filter(None, map(OWN.match, layout.comments)), None)
-    cut = _cut_short(path, layout, lines.end)
-    announced = int(own["count"]) if own else None
-    if cut is None and (announced is None or (lines.count >= announced and _ends_with_newline(path))):
+def complete_rows(path: Path, layout: Layout, options: Options, announced: int | None, *, closed: bool) -> TableSamples:
+    """All columns of as many lines as are announced; of a file that breaks off, its lines but the last where the user accepts that.
+
+    `closed`: the last line ends with a line feed where lines are announced, so that a number cut short is seen.
+    """
+    whole = index_table(path, layout)
+    ends = _ends_with_newline(path)
+    if announced is not None and whole.length > announced:
+        what = f"it has {whole.length} lines of numbers, its header says {announced}"
+        raise refuse(f"{path}: line {layout.line + announced}", what, "Save one record a file")
+    cut = _cut_short(path, layout, whole.end)
+    if cut is None and (announced is None or (whole.length == announced and (ends or not closed))):
         return whole
-    unsure = lines.count - 1 if cut is not None or not _ends_with_newline(path) else lines.count
+    unsure = whole.length - 1 if cut is not None or not ends or not closed else whole.length
     if FaultTolerance.TRUNCATED in options.accept_faults and unsure > 0:
         return replace(whole, length=unsure)
-    what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {lines.count} of {announced} samples"
-    advice = f'Export it anew, or accept "truncated" to use the {unsure} samples before'
-    raise refuse(f"{path}: line {layout.line + lines.count - 1}", what, advice)
+    what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {whole.length} of {announced} samples"
+    advice = f'Export it anew, or accept "truncated" to use the {max(0, unsure)} samples before'
+    raise refuse(f"{path}: line {layout.line + whole.length - 1}", what, advice)
 
 
 def _cut_short(path: Path, layout: Layout, end: int) -> str | None:
@@ -109,72 +153,36 @@ def _ends_with_newline(path: Path) -> bool:
         return stream.read(1) == b"\n"
 
 
-def _comment(layout: Layout, kind: str) -> str:
-    return next((line.removeprefix(SAYING[kind]) for line in layout.comments if line.startswith(SAYING[kind])), "")
-
-
-def _record(path: Path, layout: Layout, samples: TableSamples, options: Options) -> Record:
-    time = _column(layout, options.arrays.time)
-    clock = _clock(path, layout, samples, time, options)
-    columns = tuple(number for number in range(len(layout.names)) if number != time)
-    roles = _roles(layout, len(columns))
-    channels = [Channel(layout.names[number], layout.units[number], role) for number, role in zip(columns, roles, strict=True)]
-    if not channels:
-        raise refuse(str(path), "it has a column of times and no other", "Give at least one channel")
-    chosen = replace(samples, columns=columns)
-    return clocked_record(channels, chosen, clock, options, name=_comment(layout, "name"), where=str(path))
-
-
-def _roles(layout: Layout, count: int) -> list[Role]:
-    said = [text.strip() for text in _comment(layout, "roles").split(",")]
-    known = {role.value: role for role in Role}
-    return [known[text] for text in said] if len(said) == count and all(text in known for text in said) else [Role.UNKNOWN] * count
-
-
-def _clock(path: Path, layout: Layout, samples: TableSamples, time: int | None, options: Options) -> Clock:
-    own = next(filter(None, map(OWN.match, layout.comments)), None)
-    stated = options.rate or (float(own["rate"]) if own else None)
-    if time is None and stated is None:
-        what = f"none of its columns is called time: {', '.join(layout.names[:12])}"
-        raise refuse(str(path), what, 'Say which has the times (array "time=..."), or state the rate (rate)')
-    if time is None or options.rate:
-        return Clock(float(stated or 0.0), 0.0, ((0, samples.length),))
-    if layout.units[time] not in ("", *TIME_SCALES):
-        raise refuse(f"{path}: {layout.names[time]}", f'its unit is "{layout.units[time]}", where a time is expected', "Write s, ms or us")
-    scale = TIME_SCALES.get(layout.units[time], 1.0)
-    times = replace(samples, columns=(time,))
-    return determine_clock(times, options, f"{path}: {layout.names[time]}", scale=scale, stated=stated)
-
-
-def _responses(
-    path: Path, layout: Layout, samples: TableSamples, options: Options, own: re.Match[str] | None
-) -> tuple[Record | Responses, ...]:
-    """The columns in the form of named arrays: frequencies, then the parts of each response, and coherence or not."""
-    at = 0 if own else _column(layout, options.arrays.frequencies)
-    unit = layout.units[at or 0]
-    if unit not in ("", "Hz", "kHz"):
-        raise refuse(f"{path}: {layout.names[at or 0]}", f'its unit is "{unit}", where a frequency is expected', "Write Hz or kHz")
+def _own_responses(own: Contents, layout: Layout, samples: TableSamples) -> Contents:
+    """The responses of a file written here: its frequencies, then the parts of each output's response to each input."""
     values = samples.read(0, samples.length)
-    chosen = [number for number in range(len(layout.names)) if number != (at or 0) and (own or _is_chosen(layout.names[number], options))]
-    others = values[:, chosen] if own else _rectangular(path, layout, chosen, values)
-    sides = {side: _side(layout, side) for side in ("outputs", "inputs")} if own else _pairs(path, layout, chosen)
-    outputs, inputs = len(sides["outputs"]), len(sides["inputs"])
-    parts = others.shape[1] // max(1, outputs * inputs)
-    if parts not in (2, 3) or parts * outputs * inputs != others.shape[1]:
-        what = f"{others.shape[1]} columns do not hold the responses of {outputs} outputs to {inputs} inputs"
-        raise refuse(str(path), what, "Write the file anew")
-    columns = others.reshape(-1, outputs, inputs, parts)
-    held = [
-        HeldArray("frequencies", values[:, at or 0] * (1e3 if unit == "kHz" else 1.0)),
-        HeldArray("responses", complex_of(columns[..., 0], columns[..., 1])),
-        *([HeldArray("coherence", columns[..., 2])] if parts == 3 else []),
-    ]
-    said: dict[str, Attribute] = {kind: _comment(layout, kind) for kind in ("name", "window")}
-    said |= {f"{side[:-1]}_names": tuple(name for name, _ in pairs) for side, pairs in sides.items()}
-    said |= {f"{side[:-1]}_units": tuple(unit for _, unit in pairs) for side, pairs in sides.items()}
-    said |= {"averages": float(own["averages"])} if own else {}
-    whole = replace(options, kind=Kind.RESPONSES, arrays=Arrays())
-    return read_arrays(Contents(str(path), tuple(held), said), whole)
+    outputs, inputs = (len(own.texts(f"{side}_names")) for side in ("output", "input"))
+    parts = (len(layout.names) - 1) // max(1, outputs * inputs)
+    if parts not in (2, 3) or parts * outputs * inputs != len(layout.names) - 1:
+        what = f"{len(layout.names) - 1} columns do not hold the responses of {outputs} outputs to {inputs} inputs"
+        raise refuse(own.where, what, "Write the file anew")
+    return _contents(own.where, values[:, 0], values[:, 1:].reshape(-1, outputs, inputs, parts), own.said)
+
+
+def _contents(where: str, frequencies: Array, parts: Array, said: Mapping[str, Attribute]) -> Contents:
+    """The arrays of responses from their parts (f, outputs, inputs, 2 or 3): real, imaginary, and coherence or not."""
+    arrays = {"frequencies": frequencies, "responses": complex_of(parts[..., 0], parts[..., 1])}
+    arrays |= {"coherence": parts[..., 2]} if parts.shape[-1] == 3 else {}
+    return Contents(where, tuple(held_array(name, values) for name, values in arrays.items()), said)
+
+
+def _responses(path: Path, layout: Layout, samples: TableSamples, options: Options, lines: int) -> Contents:
+    """The responses among the columns, by their names; the one input is not named. A magnitude in dB is a number."""
+    unit = layout.units[lines]
+    if unit not in ("", "Hz", "kHz"):
+        raise refuse(f"{path}: {layout.names[lines]}", f'its unit is "{unit}", where a frequency is expected', "Write Hz or kHz")
+    values = samples.read(0, samples.length)
+    chosen = [number for number in range(len(layout.names)) if number != lines and _is_chosen(layout.names[number], options)]
+    order, outputs = _parts(path, layout, chosen)
+    parts = _rectangular(path, layout, chosen, values[:, chosen], order).reshape(-1, len(outputs), 1, len(order))
+    units = tuple("1" if layout.units[number].lower() == "db" else layout.units[number] for number in chosen[:: len(order)])
+    said: dict[str, Attribute] = {"output_names": tuple(outputs), "output_units": units, "input_units": ("1" if any(units) else "",)}
+    return _contents(str(path), values[:, lines] * (1e3 if unit == "kHz" else 1.0), parts, said)
 
 
 def _is_chosen(name: str, options: Options) -> bool:
@@ -203,17 +211,8 @@ def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ..
     raise refuse(str(path), f"it has frequencies, and beside them {', '.join(names[:12])}", advice + named)
 
 
-def _pairs(path: Path, layout: Layout, chosen: list[int]) -> dict[str, list[tuple[str, str]]]:
-    """Outputs by the names of their columns; the one input is not named. A magnitude in dB is a number."""
-    order, outputs = _parts(path, layout, chosen)
-    units = ["1" if layout.units[number].lower() == "db" else layout.units[number] for number in chosen[:: len(order)]]
-    return {"outputs": list(zip(outputs, units, strict=True)), "inputs": [("input", "1" if any(units) else "")]}
-
-
-def _rectangular(path: Path, layout: Layout, chosen: list[int], values: Array) -> Array:
+def _rectangular(path: Path, layout: Layout, chosen: list[int], found: Array, order: tuple[str, ...]) -> Array:
     """The columns of responses, magnitudes and phases turned into real and imaginary parts."""
-    order, _ = _parts(path, layout, chosen)
-    found = values[:, chosen]
     if order[:2] != _POLAR:
         return found
     for first in range(0, len(chosen), len(order)):
@@ -224,11 +223,3 @@ def _rectangular(path: Path, layout: Layout, chosen: list[int], values: Array) -
         turn = np.exp(1j * found[:, first + 1] * float(dimension_of(unit).size))
         found[:, first], found[:, first + 1] = size * np.real(turn), size * np.imag(turn)
     return found
-
-
-def _side(layout: Layout, side: str) -> list[tuple[str, str]]:
-    """Names and units of outputs or inputs, as the comment says them."""
-    try:
-        return [(str(name), str(unit)) for name, unit in json.loads(_comment(layout, side))]
-    except (ValueError, TypeError):
-        return []

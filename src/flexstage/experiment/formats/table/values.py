@@ -17,26 +17,17 @@ _PIECE = 1 << 22
 _LISTED = 60
 
 
-@dataclass(frozen=True, eq=False)
-class Lines:
-    """Where a file's lines of numbers lie: offsets of every `STRIDE`th, their count, where the last ends."""
-
-    offsets: Array
-    count: int
-    end: int
-
-
-def index_lines(path: Path, start: int) -> Lines:
-    r"""The lines of a file from a byte on; blank ones at its end do not count.
+def index_table(path: Path, layout: Layout) -> TableSamples:
+    r"""All columns of a table, its lines counted; blank ones at its end do not count.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = (Path(folder) / "a.csv").write_text("1\n2\n3\n\n")
-    ...     found = index_lines(Path(folder) / "a.csv", 0)
-    >>> found.count, found.end, found.offsets.tolist()
-    (3, 5, [0])
+    ...     found = index_table(Path(folder) / "a.csv", Layout(("u",), ("V",), ",", ".", 0, 1, "utf-8", ()))
+    ...     found.length, found.end, found.offsets.tolist(), found.read(1, 3).tolist()
+    (3, 5, [0], [[2.0], [3.0]])
     """
-    end = _end(path, start)
+    start, end = layout.start, _end(path, layout.start)
     offsets, count, position = [start] if end > start else [], 0, start
     with path.open("rb") as stream:
         stream.seek(start)
@@ -45,7 +36,8 @@ def index_lines(path: Path, start: int) -> Lines:
             numbers = np.arange(count + 1, count + 1 + len(breaks))
             offsets += (position + breaks[numbers % STRIDE == 0] + 1).tolist()
             count, position = count + len(breaks), position + len(piece)
-    return Lines(np.array(offsets, dtype=np.int64), count + (end > start), end)
+    columns = tuple(range(len(layout.names)))
+    return TableSamples(path, layout, columns, count + (end > start), np.array(offsets, dtype=np.int64), end)
 
 
 def _end(path: Path, start: int) -> int:
@@ -64,13 +56,17 @@ def _end(path: Path, start: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class TableSamples:
-    """Columns of a CSV file as samples (n, columns); a missing field is not a number."""
+    """Columns of a CSV file as samples (n, columns); a missing field is not a number.
+
+    `offsets` are those of every `STRIDE`th line in the file, the lines end at `end`.
+    """
 
     path: Path
     layout: Layout
-    lines: Lines
     columns: tuple[int, ...]
     length: int
+    offsets: Array
+    end: int
 
     def read(self, start: int, stop: int) -> Array:
         """Samples `start` to `stop`, the latter excluded."""
@@ -78,9 +74,9 @@ class TableSamples:
         if stop <= start:
             return np.zeros((0, len(self.columns)))
         first = start // STRIDE
-        last = min(-(-stop // STRIDE), len(self.lines.offsets))
-        begin = int(self.lines.offsets[first])
-        end = int(self.lines.offsets[last]) if last < len(self.lines.offsets) else self.lines.end
+        last = min(-(-stop // STRIDE), len(self.offsets))
+        begin = int(self.offsets[first])
+        end = int(self.offsets[last]) if last < len(self.offsets) else self.end
         with self.path.open("rb") as stream:
             stream.seek(begin)
             raw = stream.read(end - begin)

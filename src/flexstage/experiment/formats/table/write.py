@@ -6,15 +6,17 @@ import csv
 import io
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import IO
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.base.storage.files import Attribute
 from flexstage.base.storage.store import atomic_write
-from flexstage.experiment.formats.table.read import SAYING
+from flexstage.experiment.formats.arrays import describe
+from flexstage.experiment.formats.table.read import OWN
 from flexstage.experiment.records.options import Arrays, matches
 from flexstage.experiment.records.record import Channel, Record, Responses
 
@@ -53,10 +55,8 @@ def _name_findings(where: str, channels: Iterable[Channel]) -> Iterable[Finding]
 
 
 def _write_record(stream: IO[str], record: Record) -> None:
-    stream.write(f"# flexstage record; rate {float(record.rate)!r} Hz; start {float(record.start)!r} s; samples {record.length}\n")
-    if record.name:
-        stream.write(f"# {SAYING['name']}{_one_line(record.name)}\n")
-    stream.write(f"# {SAYING['roles']}{', '.join(channel.role.value for channel in record.channels)}\n")
+    said = {name: value for name, value in describe(record).items() if name not in ("names", "units")}
+    stream.write(_comment(said | {"length": float(record.length)}))
     stream.write(_row(["time [s]", *(_heading(channel.name, channel.unit) for channel in record.channels)]))
     for start in range(0, record.length, BLOCK):
         block = record.samples.read(start, min(start + BLOCK, record.length))
@@ -65,13 +65,7 @@ def _write_record(stream: IO[str], record: Record) -> None:
 
 
 def _write_responses(stream: IO[str], responses: Responses) -> None:
-    counts = f"outputs {len(responses.outputs)}; inputs {len(responses.inputs)}; averages {responses.averages or 0}"
-    stream.write(f"# flexstage responses; {counts}\n")
-    for kind, text in (("name", responses.name), ("window", responses.window)):
-        if text:
-            stream.write(f"# {SAYING[kind]}{_one_line(text)}\n")
-    for kind, channels in (("outputs", responses.outputs), ("inputs", responses.inputs)):
-        stream.write(f"# {SAYING[kind]}{json.dumps([[channel.name, channel.unit] for channel in channels], ensure_ascii=False)}\n")
+    stream.write(_comment(describe(responses)))
     parts = [np.real(responses.values), np.imag(responses.values), *([] if responses.coherence is None else [responses.coherence])]
     endings = ("re", "im", "coherence")[: len(parts)]
     pairs = [
@@ -88,8 +82,8 @@ def _write_responses(stream: IO[str], responses: Responses) -> None:
     _write_numbers(stream, np.column_stack([responses.frequencies, np.stack(parts, axis=-1).reshape(len(responses.frequencies), -1)]))
 
 
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
+def _comment(said: Mapping[str, Attribute]) -> str:
+    return f"# {OWN}{json.dumps(said, ensure_ascii=False)}\n"
 
 
 def _heading(name: str, unit: str) -> str:

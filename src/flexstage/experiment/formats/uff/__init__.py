@@ -1,12 +1,8 @@
 """Universal files: functions at nodal degrees of freedom (data set 58), in ASCII and in binary."""
 
-from functools import partial
-
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.uff.read import is_uff, read_uff
 from flexstage.experiment.formats.uff.write import write_uff
 
 UFF = Format((".uff", ".unv", ".58", ".ufb"), is_uff, read_uff, write_uff)
 """Universal file, written in binary: to the bit."""
-UFF_ASCII = Format((), is_uff, read_uff, partial(write_uff, binary=False))
-"""Universal file, written in ASCII: 13 digits."""

@@ -180,19 +180,17 @@ def place_name(place: tuple[str, int, int]) -> str:
     return f"{name} {node}{where}".strip() if node else name
 
 
-def head(function: Function, *, binary_bytes: int | None = None) -> bytes:
-    """The bytes of a data set up to its values: for ASCII, or for binary with the number of bytes that follow.
+def head(function: Function, size: int) -> bytes:
+    """The bytes of a binary data set up to its values, which are `size` bytes.
 
     >>> axes = Axis(17, "time", "s"), Axis(8, "", "um"), Axis(0, "", "")
     >>> plain = Function(("S1", "", "", "", ""), 1, ("S1", 1, 0), ("", 0, 0), 4, 2, True, 0.0, 0.5, 0.0, *axes)
-    >>> head(plain).decode().splitlines()[7]
+    >>> head(plain, 16).decode().splitlines()[7]
     '    1         0    0         0         S1         1   0       NONE         0   0'
-    >>> parse_head(head(plain).decode().splitlines()[2:]) == parse_head(head(plain, binary_bytes=16).decode().splitlines()[2:])
-    True
+    >>> parse_head(head(plain, 16).decode().splitlines()[2:]).step
+    0.5
     """
-    start = (
-        f"{58:6d}{'':74}" if binary_bytes is None else f"{58:6d}b{1:6d}{2:6d}{HEAD_LINES:12d}{binary_bytes:12d}{0:6d}{0:6d}{0:12d}{0:12d}"
-    )
+    start = f"{58:6d}b{1:6d}{2:6d}{HEAD_LINES:12d}{size:12d}{0:6d}{0:6d}{0:12d}{0:12d}"
     lines = [f"{-1:6d}", start, *(f"{printable(text) or 'NONE':80}" for text in function.texts)]
     places = "".join(
         f" {(name or 'NONE')[:10]:>10}{node:10d}{direction:4d}" for name, node, direction in (function.response, function.reference)

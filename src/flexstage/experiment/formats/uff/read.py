@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections import Counter
@@ -13,11 +14,12 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.formats.arrays import complex_of, side_by_side
+from flexstage.base.storage.files import Attribute
+from flexstage.experiment.formats.arrays import Contents, complex_of, held_array, read_arrays, side_by_side
 from flexstage.experiment.formats.uff.function import COHERENCE, KINDS
 from flexstage.experiment.formats.uff.scan import DataSet, scan
 from flexstage.experiment.records.clock import Clock, determine_clock, longest_stretch
-from flexstage.experiment.records.options import FaultTolerance, Kind, Options, assign, matches, number_names, select_names
+from flexstage.experiment.records.options import Arrays, FaultTolerance, Kind, Options, assign, matches, number_names, select_names
 from flexstage.experiment.records.record import Channel, Record, Responses, Role, changed_samples
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
@@ -55,7 +57,7 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
         raise DesignError([_nothing(path, found)])
     coherences = [each for each in found if each.function.kind == COHERENCE]
     record = (_record(path, histories, options),) if histories and options.kind is not Kind.RESPONSES else ()
-    return (*record, *((_responses(path, responses, coherences, options),) if responses and options.kind is not Kind.RECORD else ()))
+    return (*record, *(_responses(path, responses, coherences, options) if responses and options.kind is not Kind.RECORD else ()))
 
 
 _ADVICE = 'Export the file anew, or accept "truncated" to use what there is'
@@ -167,25 +169,34 @@ def refines(text: str, field: float, *, inverse: bool = False) -> bool:
     return float(f"{number:.5e}") == field
 
 
-def _responses(path: Path, found: list[DataSet], coherences: list[DataSet], options: Options) -> Responses:
+def _responses(path: Path, found: list[DataSet], coherences: list[DataSet], options: Options) -> tuple[Record | Responses, ...]:
+    """The responses as arrays of the documented form. Where only the ratio has a unit, it stays with the output; the input has none."""
     table = _table(path, found, options)
     outputs, inputs = _complete(path, table, options)
-    frequencies = _frequencies(path, list(table.values()))
-    values = np.stack([np.stack([_complex(table[output, input_]) for input_ in inputs], axis=-1) for output in outputs], axis=-2)
-    first = table[outputs[0], inputs[0]].function
+    rows = [[table[output, input_] for input_ in inputs] for output in outputs]
+    first = rows[0][0].function
     own = OWN_RESPONSE.match(first.texts[4])
-    rows, columns = _sides(path, table, (outputs, inputs), options)
-    return Responses(
-        frequencies,
-        rows,
-        columns,
-        values,
-        _coherence(path, coherences, table, (outputs, inputs), options),
-        window=_text(first.texts[3]) if own else "",
-        averages=int(own["averages"]) or None if own else None,
-        name=first.texts[2] if own else first.texts[0],
-        source=str(path),
-    )
+    above, below = ([row[0].function.ordinate.unit for row in rows], [each.function.denominator.unit for each in rows[0]])
+    ratio = not any(below) and any("/" in unit for unit in above)
+    said: dict[str, Attribute] = {
+        "output_names": outputs,
+        "output_units": tuple(above),
+        "input_names": inputs,
+        "input_units": ("1",) * len(inputs) if ratio else tuple(below),
+        "window": _text(first.texts[3]) if own else "",
+        "averages": float(own["averages"]) if own else 0.0,
+        "name": first.texts[2] if own else first.texts[0],
+    }
+    arrays = {"frequencies": _frequencies(path, list(itertools.chain(*rows))), "responses": _matrix(rows)}
+    if (shares := _coherence(path, coherences, table, rows, options)) is not None:
+        arrays["coherence"] = np.real(_matrix(shares))
+    contents = Contents(str(path), tuple(held_array(name, values) for name, values in arrays.items()), said)
+    return read_arrays(contents, replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
+
+
+def _matrix(rows: list[list[DataSet]]) -> Array:
+    """Complex values (f, outputs, inputs)."""
+    return np.moveaxis(np.array([[_complex(each) for each in row] for row in rows]), 2, 0)
 
 
 def _text(line: str) -> str:
@@ -237,19 +248,6 @@ def _table(path: Path, found: list[DataSet], options: Options) -> dict[tuple[str
     return table
 
 
-def _sides(
-    path: Path, table: dict[tuple[str, str], DataSet], names: tuple[tuple[str, ...], tuple[str, ...]], options: Options
-) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
-    """Outputs and inputs with units. Where only the ratio has one, it stays with the output and the input is without dimension."""
-    outputs, inputs = names
-    rows = [Channel(name, table[name, inputs[0]].function.ordinate.unit, Role.OUTPUT) for name in outputs]
-    below = [table[outputs[0], name].function.denominator.unit for name in inputs]
-    ratio = not any(below) and any("/" in row.unit for row in rows)
-    columns = [Channel(name, "1" if ratio else unit, Role.INPUT) for name, unit in zip(inputs, below, strict=True)]
-    whole = assign((*rows, *columns), Options(units=options.units), str(path))
-    return whole[: len(rows)], whole[len(rows) :]
-
-
 def _complex(found: DataSet) -> Array:
     columns = found.values.read(0, found.values.length)[:, -2 if found.function.is_complex else -1 :]
     return complex_of(columns[:, 0], columns[:, 1]) if found.function.is_complex else columns[:, 0].astype(complex)
@@ -279,20 +277,12 @@ def _axis(found: DataSet) -> Array:
 
 
 def _coherence(
-    path: Path,
-    found: list[DataSet],
-    table: dict[tuple[str, str], DataSet],
-    names: tuple[tuple[str, ...], tuple[str, ...]],
-    options: Options,
-) -> Array | None:
+    path: Path, found: list[DataSet], table: dict[tuple[str, str], DataSet], rows: list[list[DataSet]], options: Options
+) -> list[list[DataSet]] | None:
     """The coherence of every response; `None` where not all have theirs. Raises `DesignError` where only the last lacks it."""
-    outputs, inputs = names
-    size = table[outputs[0], inputs[0]].values.length
-    stored = {_pair(each): each for each in found if each.values.length == size}
-    lack = [(output, input_) for output in outputs for input_ in inputs if (output, input_) not in stored]
+    stored = {_pair(each): each for each in found if each.values.length == rows[0][0].values.length}
+    lack = [_pair(each) for each in itertools.chain(*rows) if _pair(each) not in stored]
     if lack and lack == list(table)[-1:] and len(table) > 1 and FaultTolerance.INCOMPLETE not in options.accept_faults:
         what = f"all responses have their coherence but the last, of {lack[0][0]} to {lack[0][1]}: the file may break off there"
         raise DesignError([Finding(str(path), what, 'Export the file anew, or accept "incomplete" to do without coherence')])
-    if lack:
-        return None
-    return np.stack([np.stack([np.real(_complex(stored[output, input_])) for input_ in inputs], axis=-1) for output in outputs], axis=-2)
+    return None if lack else [[stored[_pair(each)] for each in row] for row in rows]

@@ -14,8 +14,8 @@ from flexstage.experiment.identification.bands import Sweep
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, stabilisation
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.lscf import Poles
+from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
-from flexstage.experiment.spectral.cross_spectra import Tell
 
 BLOCKS = 40
 """Into how many blocks a record is divided: their scatter gives the intervals."""
@@ -57,7 +57,7 @@ class Band:
     scale: Array
 
 
-def band_covariances(record: Record, low: float, high: float, tell: Tell | None = None) -> tuple[list[Band], Responses]:
+def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band], Responses]:
     """Output covariances of all bands between `low` and `high` in Hz, block by block; and the outputs' amplitude density, unit/Hz^0.5.
 
     Each block is transformed; products of its lines within a band, tapered towards the band's ends, give by an inverse transform
@@ -76,8 +76,7 @@ def band_covariances(record: Record, low: float, high: float, tell: Tell | None 
         power += np.abs(lines) ** 2 * (2.0 / record.rate / BLOCKS)
         for place, sweep in enumerate(every):
             parts[place].append(_covariances(lines[slice(*_lines(sweep, record.rate / size, len(lines)))], lags))
-        if tell is not None:
-            tell((number + 1) / BLOCKS)
+        report((number + 1) / BLOCKS)
     bands = []
     for sweep, each in zip(every, parts, strict=True):
         first, last = _lines(sweep, record.rate / size, size // 2 + 1)

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import ComputedSamples, Record, Samples
-from flexstage.experiment.spectral.cross_spectra import Tell
 from flexstage.experiment.spectral.lines import block_count
 
 _TAPERS = 8
@@ -73,7 +73,7 @@ def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, .
     return ComputedSamples(samples.length, read)
 
 
-def remove_tones(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Tone, ...]]:
+def remove_tones(record: Record) -> tuple[Record, tuple[Tone, ...]]:
     """The record without steady tones in its outputs, and all tones seen.
 
     A tone is a line of what the inputs do not explain that stands eight times above those around it, and that by Thomson's harmonic F-test
@@ -97,8 +97,7 @@ def remove_tones(record: Record, tell: Tell | None = None) -> tuple[Record, tupl
     found: list[Tone] = []
     for start in range(0, parts * size, size):
         found += _tones_of_block(record, inputs, outputs, start, start + size)
-        if tell is not None:
-            tell((start + size) / (parts * size))
+        report((start + size) / (parts * size))
     if not steady_tones(found):
         return record, tuple(found)
     return replace(record, samples=quiet_samples(record.samples, steady_tones(found), outputs, record.rate)), tuple(found)

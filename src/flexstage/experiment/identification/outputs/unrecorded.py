@@ -16,7 +16,6 @@ from flexstage.experiment.identification.identify import Search, close_groups, i
 from flexstage.experiment.identification.outputs.subspace import BLOCKS, Shaken, band_covariances, searched_from, shaken_modes
 from flexstage.experiment.identification.outputs.tones import remove_tones
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
-from flexstage.experiment.spectral.cross_spectra import Tell
 
 _EVIDENT, _WEAK = 6.1, 4.0
 """Deviations by which a mode's width must differ from nought: noise reaches the first once in 1e9."""
@@ -29,7 +28,7 @@ _UNSCALED = (
 )
 
 
-def identify_floor(records: Sequence[Record], search: Search, tell: Tell | None = None) -> Identified:
+def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     """Modes of a stage that the floor shakes all along, from outputs alone: `shaken_modes`, band by band, with 95 % intervals.
 
     Forces on the stage need a density that is smooth within a band of 1.4 from end to end, in as many independent directions as modes lie
@@ -50,7 +49,7 @@ def identify_floor(records: Sequence[Record], search: Search, tell: Tell | None 
     if low == np.inf:
         what = f"bands between {began:.4g} and {high:.4g} Hz hold too few lines in a fortieth of {record.duration:.4g} s"
         require([Finding(where, what, "Record longer: modes in the floor's noise take minutes; or ask for a wider band")])
-    bands, density = band_covariances(record, low, high, tell)
+    bands, density = band_covariances(record, low, high)
     every = [shaken_modes(band, search.highest_damping) for band in bands]
     modes = [
         mode
@@ -84,15 +83,13 @@ def _is_double(first: Shaken, second: Shaken) -> bool:
     return near and vector_assurance(first.shape, second.shape) > _SAME
 
 
-def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None = None) -> Identified:
+def identify_decay(records: Sequence[Record], search: Search) -> Identified:
     """Modes of free decays, from outputs alone: the transform of a decay is a response with the stage's poles, to which modes are fitted.
 
     Of y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}): each decay is a column as
     an input is, its amplitudes in the place of participations. It is taken from where the outputs are largest, relative to their root
     mean squares, to the end. Several records are several decays; of repeated modes one shows one combination only.
     """
-    if tell is not None:
-        tell(0.0)
     starts = [_largest(record) for record in records]
     size = min(record.length - start for record, start in zip(records, starts, strict=True))
     first = records[0]
@@ -105,7 +102,7 @@ def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None 
     values = np.stack([np.fft.rfft(part - np.mean(part[-max(1, size // 10) :], axis=0), axis=0) for part in parts], axis=2) / first.rate
     inside = lines <= _HIGHEST * first.rate
     decays = tuple(Channel(f"decay {number + 1}", "s^-1", Role.INPUT) for number in range(len(records)))
-    found = identify(Responses(lines[inside], first.outputs, decays, values[inside], source=where), search, tell)
+    found = identify(Responses(lines[inside], first.outputs, decays, values[inside], source=where), search)
     began = ", ".join(f"{start / record.rate + record.start:.5g} s" for record, start in zip(records, starts, strict=True))
     said = f"a free decay is taken from where outputs are largest: {began}."
     return replace(

@@ -49,10 +49,6 @@ class LoadPath:
     locked: tuple[str, ...] = ()
     turns: Array | None = None
 
-    def some(self, points: Array) -> LoadPath:
-        """Select points by their numbers."""
-        return LoadPath(self.drive, self.values[points], self.state.some(points), self.motions[points], self.locked)
-
     @property
     def events(self) -> tuple[Event, ...]:
         """Limit points and bifurcations, in order; a bifurcation at the mean of its two adjacent values."""

@@ -22,11 +22,10 @@ from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.result import Sweep
 from flexstage.studies.sweeps.show.figures import designs_figure, effects_figure
-from flexstage.studies.sweeps.show.interaction_figures import pairs_figure, strongest_figure
+from flexstage.studies.sweeps.show.interaction_figures import strongest_figure
 from flexstage.studies.sweeps.show.tables import failure_table, limit_notes, pair_table, share_table, variable_table
 
 _STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
-_MAP = "Shares of variance in percent: of variables alone on the diagonal, of what two do together beyond that below it."
 _STRONGEST = "The strongest pairs: where lines are not parallel, one variable decides what the other does. Above: share of variance."
 
 
@@ -106,11 +105,10 @@ def _parallel(study: Study, found: Effects) -> str:
 
 
 def _interactions(study: Study, found: Effects) -> list[Block]:
-    """The pairs: table, map, and the strongest."""
+    """The pairs: table, and the strongest."""
     if not np.any(np.isfinite(found.pairs)):
         return []
-    shares = Picture(to_svg(pairs_figure(found), "pairs", "shares of variance of pairs of variables"), _MAP)
-    blocks: list[Block] = [pair_table(found), shares]
+    blocks: list[Block] = [pair_table(found)]
     if found.strongest:
         blocks.append(Picture(to_svg(strongest_figure(study, found), "strongest", "mean responses over pairs of variables"), _STRONGEST))
     return blocks
