@@ -268,7 +268,7 @@ def _modes(stiffness: Array, inertia: Array, count: int) -> tuple[Array, Array]:
 
 
 def _stepped(stiff: Array, heavy: Array, values: Array, vectors: Array) -> tuple[Array, Array]:
-    """Eigenpairs M v = mu K v, v^T K v = 1, to first order in the imaginary parts of K and M, by a bordered system per mode."""
+    """Eigenpairs M v = mu K v to first order in the imaginary parts of K and M, by a bordered system per mode."""
     steps, turns = [], []
     for number in range(values.shape[-1]):
         value, vector = values[..., number, None, None], vectors[..., number : number + 1]

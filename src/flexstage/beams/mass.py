@@ -23,8 +23,8 @@ from flexstage.parts.part import Elastic, Part, Restricted, inner
 def mass(part: Part, material: Material | None) -> Array:
     """Compute the mass (..., 12, 12) of a part for the twists of its first and second end, both at its centre, in the link frame [SI].
 
-    The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K: S the compliance accumulated from the first end to
-    x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
+    The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K. S is the compliance accumulated from the first end
+    to x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
 
     It includes the material between the arc ends and gives a rigid motion the exact inertia of the solid. A `ComplianceMatrix` part has
     half its mass at each end; `Joint` and `Restricted` parts have none.

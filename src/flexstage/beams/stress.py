@@ -44,8 +44,9 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
 
     Beam theory at every station from end to end: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z.
 
-    sigma = |N|/A + |M_z| t/(2 I_z) + |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)), tau is the sum of the largest shear and
-    torsion stresses, and the result sqrt(sigma^2 + 3 tau^2).
+    sigma = |N|/A + |M_z| t/(2 I_z) + |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)).
+
+    tau is the sum of the largest shear and torsion stresses, and the result sqrt(sigma^2 + 3 tau^2).
 
     The maxima of a section are added although they occur at different points: an upper bound of the nominal stress. `None` for parts
     without a known section (piezo stacks have load limits instead) or without a known notch factor.

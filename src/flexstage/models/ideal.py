@@ -367,8 +367,8 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], idle
 def _sense(graph: _Graph, solution: Elimination, columns: list[int], idle_columns: list[int], bodies: Array) -> Array:
     """The body motions (..., N, f) for gauges and force actuators.
 
-    Free internal modes that one of them sees store the least energy in the links they strain: so do forces on idle bodies reach the
-    platform.
+    Free internal modes that one of them sees have minimal energy in the links they strain. Forces on idle bodies reach the platform in this
+    way.
     """
     size = graph.order.size
     driven, idle = solution.basis[..., :size, columns], solution.basis[..., :size, idle_columns]

@@ -108,8 +108,11 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     - Locked freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion.
     - Free internal modes without effect keep their inertia, are removed with their zero modes, and are listed in `idle`.
 
-    Raises `DesignError` for a mechanism (K singular), naming the free bodies, for a stroke that locked freedoms block, and for a nominal
-    position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
+    Raises `DesignError`:
+
+    - for a mechanism (K singular), naming the free bodies;
+    - for a stroke that locked freedoms block;
+    - for a nominal position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
@@ -407,9 +410,7 @@ def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: 
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
         held = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
         if held:
-            what = (
-                f"the stroke of actuator {name} is blocked: its axis is locked, and nothing gives way between it and {', '.join(held[:6])}"
-            )
+            what = f"the stroke of actuator {name} is blocked: no elastic freedom between its locked axis and {', '.join(held[:6])}"
             yield Finding(link, what, "Free one of these, or give it stiffness")
 
 

@@ -145,8 +145,8 @@ def _broadcast(*arrays: Array) -> list[Array]:
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
     """Return the stiffness of every actuator's unit in actuator coordinates [N/m], specified or computed.
 
-    A unit that is neither a straight strut nor a lever is the chain of links that carry its load (`chain_compliance`), if the `kinematics`
-    are given and statics determines those links.
+    Any other unit than a straight strut or a lever is the chain of links that carry its load (`chain_compliance`). This requires the
+    `kinematics`, and statics that determine those links.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -175,9 +175,9 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
 def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
     """Compute the compliance [m/N] in an actuator coordinate of all links that carry its load: the sum of f^T C f, by virtual work.
 
-    f is the wrench in the locked freedoms of a link, in equilibrium with fixed strokes, under a platform wrench that loads only this
-    actuator, V^T w = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free freedoms carry nothing;
-    ideal joints are rigid.
+    f is the wrench in the locked freedoms of a link, in equilibrium with fixed strokes. The platform wrench loads only this actuator, V^T w
+    = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free freedoms carry nothing; ideal joints are
+    rigid.
 
     `None` if statics does not determine f (redundant constraints or a guide contribute), if a link has no known compliance, or if nothing
     is elastic.

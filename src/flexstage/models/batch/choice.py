@@ -1,7 +1,7 @@
 """Platform frequencies: the lowest at which the modes contribute a tenth of the platform's static compliance, in each direction.
 
-With phi the platform twist in a mass-normalised mode and C = sum phi phi^T / omega^2 its static compliance, H(f) is the sum over the modes
-up to f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
+The platform twist in a mass-normalised mode is phi, its static compliance C = sum phi phi^T / omega^2. H(f) is the sum over the modes up to
+f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
 
 The eigenvalues of H do not depend on units, reference point, basis of repeated modes, or modes above f.
 """

@@ -138,8 +138,8 @@ def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
 
     They agree with `models.lumped` solved by dense matrices within 1e-6 (relative), proven for each design.
 
-    Invalid designs do not affect the others: for non-finite numbers, a stiffness that is not positive or outlines without a mass, the
-    `Status` says that no result exists.
+    Invalid designs do not affect the others: their `Status` says that no result exists. Causes are non-finite numbers, a stiffness that is
+    not positive, or outlines without a mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))

@@ -36,7 +36,7 @@ class _Group:
 
 
 @dataclass(frozen=True, eq=False)
-class _BlockSolution:
+class _Solution:
     """Coordinates of a block: `free` ones are idle; the `bound` ones follow from these and from the coordinates of `others`, in order."""
 
     free: Array
@@ -74,7 +74,7 @@ def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes:
     for number, group in groups.items():
         for block in group.blocks:
             near[block].add(number)
-    solutions: dict[int, _BlockSolution] = {}
+    solutions: dict[int, _Solution] = {}
     stresses: list[tuple[Array, Array]] = []
     depth = dict.fromkeys(near, 0)
     heap = [(_degree(groups, near[block]), block) for block in range(1, bodies)]
@@ -151,19 +151,19 @@ def _join(groups: Sequence[_Group], first: int | None, starts: Array) -> _Group:
     return _Group(tuple(blocks.tolist()), rows, made, shares)
 
 
-def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Array, Array]]) -> tuple[_BlockSolution, _Group | None]:
+def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Array, Array]]) -> tuple[_Solution, _Group | None]:
     """Body coordinates from its rows, and the rows that do not contain it; zero rows are self-stress states."""
     width = int(starts[block + 1] - starts[block])
     others = group.blocks[1:]
     if not len(group.rows):
         every = np.arange(width)
-        return _BlockSolution(every, every[:0], np.zeros((0, width)), (), np.zeros((0, 0))), None
+        return _Solution(every, every[:0], np.zeros((0, width)), (), np.zeros((0, 0))), None
     turn, triangle, order = scipy.linalg.qr(group.rows[:, :width], pivoting=True)
     rank = int(np.sum(np.abs(np.diag(triangle)) > _RANK))
     remainder, shares = turn.T @ group.rows[:, width:], turn.T @ group.shares
     solved = -np.linalg.solve(triangle[:rank, :rank], np.concatenate([triangle[:rank, rank:], remainder[:rank]], axis=1))
     free = width - rank
-    solution = _BlockSolution(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
+    solution = _Solution(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
     vanished = np.max(np.abs(remainder[rank:]), axis=1, initial=0.0) < _RANK
     stresses += [(group.made, share) for share in shares[rank:][vanished]]
     kept = remainder[rank:][~vanished]
@@ -171,13 +171,7 @@ def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Ar
 
 
 def _solved(
-    groups: list[_Group],
-    solutions: dict[int, _BlockSolution],
-    stresses: list[tuple[Array, Array]],
-    *,
-    scale: Array,
-    starts: Array,
-    bodies: int,
+    groups: list[_Group], solutions: dict[int, _Solution], stresses: list[tuple[Array, Array]], *, scale: Array, starts: Array, bodies: int
 ) -> ConstraintSolution:
     kept = [0, *range(bodies, len(starts) - 1)]
     columns = np.concatenate([np.arange(starts[block], starts[block + 1]) for block in kept])
@@ -193,7 +187,7 @@ def _solved(
     return ConstraintSolution(last, tuple(_idle_motions(solutions, starts, scale)), _named(stresses))
 
 
-def _idle_motions(solutions: dict[int, _BlockSolution], starts: Array, scale: Array) -> list[Sparse]:
+def _idle_motions(solutions: dict[int, _Solution], starts: Array, scale: Array) -> list[Sparse]:
     """A motion for every free coordinate, with all coordinates that follow from it."""
     names = list(solutions)
     place = {block: number for number, block in enumerate(names)}
@@ -225,7 +219,7 @@ def _idle_motions(solutions: dict[int, _BlockSolution], starts: Array, scale: Ar
     return motions
 
 
-def _following(solution: _BlockSolution, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
+def _following(solution: _Solution, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
     """Motion of a block by the blocks that have moved, its own free coordinates at zero."""
     result = np.zeros((int(starts[block + 1] - starts[block]), count))
     column = 0

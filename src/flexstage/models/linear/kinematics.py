@@ -31,7 +31,7 @@ class Idle:
 
 @dataclass(frozen=True)
 class Redundant:
-    """Redundant constraint: locked freedoms (`B1/left.y`), one of which is superfluous."""
+    """Redundant constraint: a set of locked freedoms (`B1/left.y`) with one superfluous member."""
 
     TABLE: ClassVar[Layout] = Layout("Redundant constraints", "constraints")
 

@@ -59,8 +59,8 @@ class LinearModel(CheckedFields):
 
     Batch axes lead, and only where something varies: an array without them is valid for every design.
 
-    `viscous` are the dampers (..., d, d) [N s/m] of parts, by stiffness contribution. They resist the rate of its deformation, G q less the
-    imposed one, in its first d rows, in addition to the damping law of the model. Link forces exclude dampers.
+    `viscous` are the dampers (..., d, d) [N s/m] of parts, by stiffness contribution. They resist the rate of its deformation (G q less the
+    imposed one) in its first d rows. The damping law of the model is added. Link forces exclude dampers.
 
     `idle` names coordinates without stiffness. They are removed with their zero modes: the kept ones are M-orthogonal to them, so that
     frequencies and shapes do not depend on their choice.
@@ -68,8 +68,8 @@ class LinearModel(CheckedFields):
     `idle_output` (..., p, k) are the outputs of the k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground
     acceleration (both absent: none).
 
-    The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`), `solve` and `momenta` use no dense
-    matrix, and K and M are assembled on request.
+    The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense
+    matrix; K and M are assembled on request.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.lumped(stage)")

@@ -136,7 +136,7 @@ def _groups(model: Nonlinear, pose: Pose) -> Any:
 
 def _loads(model: Nonlinear, loads: Loads) -> dict[str, Array]:
     body = model.places.body.astype(np.int64)
-    return {"gravity": _copy(loads.gravity), "force": _copy(model.dead(loads)), "body": body, "arm": _copy(model.places.arm)}
+    return {"gravity": _copy(loads.gravity), "force": _copy(model.constant_wrenches(loads)), "body": body, "arm": _copy(model.places.arm)}
 
 
 def _fill(target: Any, numbers: Mapping[str, float], arrays: Mapping[str, Array]) -> None:

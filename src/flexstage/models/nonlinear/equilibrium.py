@@ -59,12 +59,12 @@ class State:
 
     @property
     def converged(self) -> Array:
-        """Which cases (...) converged."""
+        """Convergence of each case (...)."""
         return self.status == Status.CONVERGED
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why each case has no result, in the order of `status.ravel()`; empty if it has one."""
+        """Failure reason of each case, in the order of `status.ravel()`; empty if it converged."""
         return tuple(
             failure_reason(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True)
         )
@@ -169,8 +169,8 @@ def equilibrium(
     Every case starts from the nominal position, or from `start`, under its whole load. If that fails, the load grows in steps, then by arc
     length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
-    A stable state from the nominal position is also NaN if it does not continue the unloaded stage, as all loads and fixed coordinates
-    grow together. `options` with `past` limits or without `arcs` permit such states.
+    A stable state from the nominal position must also continue the unloaded stage, as all loads and fixed coordinates grow together; else
+    it is NaN. `options` with `past` limits or without `arcs` permit such states.
 
     Raises `DesignError` for names that the stage does not have.
 
@@ -322,7 +322,7 @@ def state(
 
 
 def _first(model: Nonlinear, start: State | None, hold: FixedCoordinates, cases: int) -> Pose:
-    pose = model.drawn(cases) if start is None else start.pose
+    pose = model.nominal_pose(cases) if start is None else start.pose
     if len(pose.position) != cases:
         pose = pose.of(np.zeros(cases, dtype=int))
     reactions = np.zeros((cases, len(model.hinges.locked) + len(hold.body)))

@@ -73,7 +73,7 @@ def gradients(
 ) -> Array:
     """Compute gradients (a, ...) of results by the numbers at a addresses, per SI unit, for constant loads and fixed coordinates.
 
-    By the implicit function theorem: dq/dp = - K^-1 dF/dp, K the tangent stiffness including the inner unknowns of flexures, dF/dp the
+    By the implicit function theorem: dq/dp = - K^-1 dF/dp. K is the tangent stiffness, including the inner unknowns of flexures, dF/dp the
     derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with four
     points.
 

@@ -93,7 +93,7 @@ def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates)
 
 
 def other_terms(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates) -> OtherTerms | None:
-    """Assemble the terms of links about centres, superelements and fixed coordinates; `None` if there are none."""
+    """Assemble the terms of links about centres, superelements and fixed coordinates; `None` if the stage has none."""
     if not model.hinges.names and not model.elements and not len(hold.body):
         return None
     residual, kept = _nothing(model, pose, hold)
@@ -257,7 +257,7 @@ def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
 
 def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -> None:
     """Add constant-direction forces at points of bodies, and constant couples (docs/nonlinear.md, 19)."""
-    dead = model.dead(loads)
+    dead = model.constant_wrenches(loads)
     arms = _rotate(pose.turn[:, model.places.body], model.places.arm)
     moment = cross(arms, dead[..., :3]) + dead[..., 3:]
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)

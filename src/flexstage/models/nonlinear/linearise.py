@@ -90,8 +90,9 @@ class _Coordinates:
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
     """Linearise about a state, with all cases as a batch: modes, responses and losses of a displaced or loaded stage.
 
-    - Fixed coordinates are released: stiffness is that of the free stage under the reaction, which keeps its direction (for a rotation: the
-      moment conjugate to that component of the rotation vector). Coordinates in `locked`, a subset of the fixed ones, stay fixed.
+    - Fixed coordinates are released: stiffness is that of the free stage under the reaction, which keeps its direction. For a rotation the
+      reaction is the moment conjugate to its component of the rotation vector. Coordinates in `locked`, a subset of the fixed ones, stay
+      fixed.
     - Plate fields follow without mass.
     - Stiffness is symmetrised, and split by link, with one more contribution, `geometric`.
     - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
@@ -388,7 +389,7 @@ def _turning(model: Nonlinear, state: State) -> Array:
     """Stiffness of bodies (b, n, n) due to rotation of the arms of constant-direction forces and of reactions."""
     cases = len(state.pose.position)
     result = np.zeros((cases, model.freedoms + 6, model.freedoms + 6))
-    dead = model.dead(state.loads)
+    dead = model.constant_wrenches(state.loads)
     arms = (state.pose.turn[:, model.places.body] @ model.places.arm[..., None])[..., 0]
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
     for place, number in enumerate(model.places.body):

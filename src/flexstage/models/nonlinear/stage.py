@@ -106,7 +106,7 @@ class Nonlinear:
         """Return the number of a body."""
         return len(self.bodies) if name == GROUND else self.bodies.index(name)
 
-    def drawn(self, cases: int) -> Pose:
+    def nominal_pose(self, cases: int) -> Pose:
         """Return the nominal, unloaded pose of b cases."""
         count = len(self.bodies) + 1
         sizes = [(len(group.names), cases, group.law.form.shape[-1]) for group in self.flexures]
@@ -118,7 +118,7 @@ class Nonlinear:
             np.zeros((cases, len(self.hinges.locked))),
         )
 
-    def dead(self, loads: Loads) -> Array:
+    def constant_wrenches(self, loads: Loads) -> Array:
         """Return the constant-direction wrenches (b, d, 6) at the points."""
         wrench = np.zeros((len(loads.inputs), len(self.places.body), 6))
         columns = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
@@ -156,8 +156,8 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     small strains in the flexures. Batches of designs are refused.
 
     `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely, a part at
-    the mean temperature of its ends, the `ground` (of this material; absent: as in `drift`) about the origin; incompatible expansion bends
-    the parts. Moduli are constant. A temperature requires the expansion of every material.
+    the mean temperature of its ends. The `ground` expands about the origin (of this material; absent: as in `drift`). Incompatible
+    expansion bends the parts. Moduli are constant. A temperature requires the expansion of every material.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]

@@ -85,8 +85,8 @@ def strains(state: State) -> Strains:
 def law_reserve(state: State) -> tuple[float, str]:
     """Return the remaining range of the link laws at a state, 1 if undeformed, 0 at the limit; and the reason.
 
-    Flexures have a limit strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % wrong: at a relative
-    rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length.
+    Flexures have a limit strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % wrong. This is at a
+    relative rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length.
 
     If the length is unknown, the extent of the stage replaces it; a spring with a length ends at twice that displacement. Links without
     stiffness have no limit.

@@ -123,8 +123,8 @@ def continue_path(loading: ProportionalLoading, begin: Point, length: float, poi
 def march(loading: ProportionalLoading, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
     """Generate equilibria beyond `begin` with step control by the path curvature and the prediction errors.
 
-    A step is repeated with a shorter length if the tangent turns, the equilibrium is off the tangent, or slope and lowest stiffness differ
-    from their prediction. So no step skips two events.
+    A step is repeated with a shorter length if the tangent turns, the equilibrium is off the tangent, or slope and stiffness differ from
+    their prediction. So no step skips two events.
 
     Ends if the step is too small a fraction of the longest previous one.
     """

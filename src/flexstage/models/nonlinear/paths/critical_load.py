@@ -88,8 +88,8 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     """Compute the critical load: the factor on `load` at which equilibrium becomes unstable, with all other loads constant.
 
     The other loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can be part of
-    `load`: their values then grow. `weight` in `load` is the weight of the stage (as a load only if the argument `weight` is zero), and
-    `stated forces` are the forces and preloads of the description, likewise.
+    `load`: their values then grow. `weight` in `load` is the weight of the stage, as a load only if the argument `weight` is zero. `stated
+    forces` are the forces and preloads of the description, likewise.
 
     Other coordinates in `hold` keep their values; those that are not `locked` (absent: all are) count as free under their reactions.
 
@@ -141,8 +141,8 @@ def _at(
 def require_continuation(start: State, end: State) -> None:
     """Refuse a stable state that is not the continuation of another one, as loads and fixed coordinates change in proportion.
 
-    Raises `DesignError` at the load of the first limit point or bifurcation on the path, at the end of the path, and if the path leads to
-    another equilibrium. An unstable state, or one whose path starts unstable, is accepted.
+    Raises `DesignError` at the first limit point or bifurcation, at the end of the path, and for a path to another equilibrium. An unstable
+    state, or one whose path starts unstable, is accepted.
     """
     one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
     continuation = continued(one, other)

@@ -253,8 +253,8 @@ def post_buckling_path(
     The first state is the last stable one before the bifurcation. The next is in the direction of the buckling mode or, with `side` -1,
     opposite to it (the sign of `Critical.shape`). Steps and points are as in `continuation`.
 
-    Raises `DesignError` as `critical_load` does; at a limit point, which `continuation` passes; for a flexure that buckles between fixed
-    ends; and without an equilibrium on the branch.
+    Raises `DesignError` as `critical_load` does, at a limit point (which `continuation` passes), for a flexure that buckles between fixed
+    ends, and without an equilibrium on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
