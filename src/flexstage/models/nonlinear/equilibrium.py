@@ -169,8 +169,8 @@ def equilibrium(
     Every case starts from the nominal position, or from `start`, under its whole load. If that fails, the load grows in steps, then by arc
     length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
-    A stable state from the nominal position must also continue the unloaded stage, as all loads and fixed coordinates grow together; else
-    it is NaN. `options` with `past` limits or without `arcs` permit such states.
+    From the nominal position, an unstable state is also NaN, as is one that does not continue the unloaded stage as all loads and fixed
+    coordinates grow together. `options` with `past` limits or without `arcs` permit such states.
 
     Raises `DesignError` for names that the stage does not have.
 

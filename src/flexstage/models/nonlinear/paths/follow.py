@@ -100,8 +100,8 @@ def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: 
 def continued(start: Task, end: Task) -> EquilibriumSolution:
     """Compute the equilibrium (of one case) that continues `start` as loads and fixed coordinates grow in proportion to `end`.
 
-    An equilibrium `end` is returned unchanged if it is next to the start, or if its path starts unstable. So is an unstable one if its
-    path has no stable equilibrium, or bends off earlier.
+    An equilibrium `end` is returned unchanged if it is next to the start, or if its path starts unstable. So is an unstable one whose path
+    bends off earlier.
 
     Else `status` is `CRITICAL` for a path with a limit point or a bifurcation, and `NOT_FOLLOWED` for a path that ends, each at the
     fraction `reached`.
@@ -121,7 +121,7 @@ def continued(start: Task, end: Task) -> EquilibriumSolution:
         return whole
 
     def lost(status: Status, reached: float) -> EquilibriumSolution:
-        return whole if after.motions else replace(whole, status=np.array([status]), reached=np.array([reached]))
+        return replace(whole, status=np.array([status]), reached=np.array([reached]))
 
     try:
         followed = follow_to_event(loading, begin, 1.0, 1e-6, length=1.0 / begin.slope)
