@@ -151,8 +151,8 @@ def bar_z(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending and shear in the plane of the width between rigid faces."""
     wide, thick = _proportions(hinge)
     sheared = hinge.shear_share / hinge.beam[..., 2]
-    held = hinge.poisson**2 * (p[0] * wide + p[1] * thick)
-    return hinge.beam[..., 2] * (1.0 - (1.0 - sheared) * held - sheared * (p[2] * _saturate(p[3] * wide) + p[4] * hinge.poisson))
+    restraint = hinge.poisson**2 * (p[0] * wide + p[1] * thick)
+    return hinge.beam[..., 2] * (1.0 - (1.0 - sheared) * restraint - sheared * (p[2] * _saturate(p[3] * wide) + p[4] * hinge.poisson))
 
 
 def bar_ry(hinge: HingeDimensions, p: Numbers) -> Array:

@@ -39,9 +39,9 @@ def mass(part: Part, material: Material | None) -> Array:
     """
     if isinstance(part, (Joint, Restricted)):
         return np.zeros((12, 12))
-    known = law_of(part)
-    if known is not None and known.mass is not None:
-        return known.mass(part)
+    part_law = law_of(part)
+    if part_law is not None and part_law.mass is not None:
+        return part_law.mass(part)
     beam = beam_of(part, material)
     return _with_modes(beam, consistent_mass(beam), fixed_end_modes(part, material))
 
@@ -56,8 +56,14 @@ def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
     >>> bool(np.all(law_and_mass(rod, steel)[0].stiffness == law(rod, steel).stiffness))
     True
     """
-    known = law_of(part)
-    if known is None or known.beam is None or known.diagonal is not None or isinstance(part, Restricted) or _has_fixed_end_modes(part):
+    part_law = law_of(part)
+    if (
+        part_law is None
+        or part_law.beam is None
+        or part_law.diagonal is not None
+        or isinstance(part, Restricted)
+        or _has_fixed_end_modes(part)
+    ):
         return law(part, material), mass(part, material)
     beam = beam_of(part, material)
     return Law((1.0 / beam.diagonal())[..., None] * np.eye(6)), consistent_mass(beam)
@@ -128,12 +134,12 @@ def _with_modes(beam: Beam, ends: Array, modes: tuple[FixedEndModes, ...]) -> Ar
     return result
 
 
-def _shared(beam: Beam, held: FixedEndModes) -> Array:
+def _shared(beam: Beam, fixed_end: FixedEndModes) -> Array:
     """Coupling mass (..., 12, n) of modes and end motions: integral of N^T w phi dx, phi (v, dv/dx), N the end motions."""
-    turning, sign = {1: (5, 1.0), 2: (4, -1.0), 3: (3, 1.0)}[held.axis]  # a slope of w along z turns about -y
-    modes = {held.axis: held.moved} | ({} if held.turned is None else {turning: sign * held.turned})
-    half, weight = held.moved.shape[-1] // 2, 0.5 * _weights(beam)
-    result = np.zeros((12, held.moved.shape[-2]))
+    turning, sign = {1: (5, 1.0), 2: (4, -1.0), 3: (3, 1.0)}[fixed_end.axis]  # a slope of w along z turns about -y
+    modes = {fixed_end.axis: fixed_end.moved} | ({} if fixed_end.turned is None else {turning: sign * fixed_end.turned})
+    half, weight = fixed_end.moved.shape[-1] // 2, 0.5 * _weights(beam)
+    result = np.zeros((12, fixed_end.moved.shape[-2]))
     for motions in _motions(beam):
         for place, rows in motions.items():
             for row in rows.keys() & modes.keys():

@@ -35,8 +35,8 @@ def has_section(part: Part) -> bool:
     >>> has_section(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))
     True
     """
-    known = law_of(part)
-    return known is not None and known.concentration is not None and known.concentration(inner(part)) is not None
+    part_law = law_of(part)
+    return part_law is not None and part_law.concentration is not None and part_law.concentration(inner(part)) is not None
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
@@ -59,8 +59,8 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     (15.0, 15.0)
     """
     own = inner(part)
-    known = law_of(own)
-    factor = None if known is None or known.beam is None or known.concentration is None else known.concentration(own)
+    part_law = law_of(own)
+    factor = None if part_law is None or part_law.beam is None or part_law.concentration is None else part_law.concentration(own)
     if factor is None:  # guaranteed by has_section
         return None
     beam = beam_of(own, material)

@@ -50,9 +50,9 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
     >>> round(float(hinge.errors["x"]), 2), hinge.findings
     (-0.16, ())
     """
-    known = None if isinstance(part, Restricted) else law_of(part)
-    ranges = () if known is None else known.ranges(part)
-    family = None if known is None else known.family(part)
+    part_law = None if isinstance(part, Restricted) else law_of(part)
+    ranges = () if part_law is None else part_law.ranges(part)
+    family = None if part_law is None else part_law.family(part)
     poisson = _POISSON if material is None else material.contraction
     errors = _errors(part, family, poisson) if family and isinstance(part, Shaped) else {}
     findings = (*(each.finding(where) for each in ranges), _plane_strain_finding(where, errors.get("rz"), poisson))
@@ -92,8 +92,8 @@ def family_of(part: Part) -> str | None:
     >>> family_of(Rod("steel", length=0.1, diameter=0.002))
     'bar'
     """
-    known = law_of(part)
-    return None if known is None else known.family(part)
+    part_law = law_of(part)
+    return None if part_law is None else part_law.family(part)
 
 
 def hinge_dimensions(part: Shaped, poisson: Number) -> HingeDimensions:

@@ -382,10 +382,10 @@ def _sense(graph: _Graph, solution: Elimination, columns: list[int], idle_column
         strain = graph.strain[..., place, :]
         force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
         energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ driven)
-    held, loose = _split_batch(np.real(energy))
+    stored, loose = _split_batch(np.real(energy))
     unresisted = [name for name, row in watching if np.any(_sees(row, still @ loose))]
     require(_undetermined_findings(graph, unresisted, first_design(still @ loose, 2)))
-    return driven - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
+    return driven - idle[..., stored] @ np.linalg.solve(energy[..., stored, :][..., stored], mixed[..., stored, :])
 
 
 def _sees_in_batch(name: str, row: Array, motions: Array) -> bool:
@@ -422,12 +422,12 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
 def _split_batch(energy: Array) -> tuple[list[int], Array]:
     """`_split_by_energy` of all designs (..., k, k), required to agree, and their combinations (..., k, l)."""
     splits = [_split_by_energy(each) for each in energy.reshape(-1, *energy.shape[-2:])]
-    held = splits[0][0]
+    stored = splits[0][0]
     for number, (other, _) in enumerate(splits):
-        if other != held:
+        if other != stored:
             raise unlike(number, "has other free internal modes with elastic resistance than the first")
     loose = np.stack([each for _, each in splits])
-    return held, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
+    return stored, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
 
 
 def _split_by_energy(energy: Array) -> tuple[list[int], Array]:

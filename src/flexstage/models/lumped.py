@@ -408,9 +408,9 @@ def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array |
 def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
     """Errors of strokes (columns) that locked freedoms (rows) cannot follow."""
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
-        held = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
-        if held:
-            what = f"the stroke of actuator {name} is blocked: no elastic freedom between its locked axis and {', '.join(held[:6])}"
+        blocking = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
+        if blocking:
+            what = f"the stroke of actuator {name} is blocked: no elastic freedom between its locked axis and {', '.join(blocking[:6])}"
             yield Finding(link, what, "Free one of these, or give it stiffness")
 
 
@@ -550,10 +550,10 @@ def _critical_share(other: Array, steep: Array) -> float:
     root = np.sqrt(np.where(np.diag(other) > 0.0, np.diag(other), 1.0))
     other, steep = (each / root / root[:, None] for each in (other, steep))
     values, vectors = np.linalg.eigh(other)
-    loose, held = vectors[:, values < SINGULAR], vectors[:, values >= SINGULAR]
+    loose, stiff = vectors[:, values < SINGULAR], vectors[:, values >= SINGULAR]
     if np.max(np.diag(loose.T @ steep @ loose), initial=0.0) > SINGULAR * np.max(np.diag(steep)):
         return 0.0
-    half = held / np.sqrt(values[values >= SINGULAR])
+    half = stiff / np.sqrt(values[values >= SINGULAR])
     return float(1.0 / np.linalg.eigvalsh(half.T @ steep @ half)[-1])
 
 
@@ -574,14 +574,14 @@ def _largest_coordinate(stage: _Stage, motion: Array) -> str:
 def _stable(stage: _Stage, strains: Contributions, size: int) -> Contributions:
     """The contributions, with NaN for later designs of a batch that negative stiffnesses make unstable."""
     links = stage.assembly.links.items()
-    stated = next((name for name, link in links if (known := law_of(link.part)) is not None and known.stiffness is not None), None)
-    if stated is None or stage.order.sparse:
+    original = next((name for name, link in links if (known := law_of(link.part)) is not None and known.stiffness is not None), None)
+    if original is None or stage.order.sparse:
         return strains
     total = assemble(strains, size)
     if total.ndim == 2:
         return strains
     failed = np.isnan(cholesky(np.real(total))[..., :1, :1])
-    return {**strains, stated: replace(strains[stated], law=np.where(failed, np.nan, strains[stated].law))}
+    return {**strains, original: replace(strains[original], law=np.where(failed, np.nan, strains[original].law))}
 
 
 def _without_rounding(operator: Array, basis: Array | None) -> Array:

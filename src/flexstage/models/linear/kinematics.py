@@ -209,11 +209,11 @@ class Kinematics(Result):
         if not self.actuated:
             strokes = "1 stroke does" if len(self.actuators) == 1 else f"{len(self.actuators)} strokes do"
             motions = f"{self.mobility} ideal motion{'' if self.mobility == 1 else 's'}"
-            held = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
+            immobile_note = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
             mend = [finding.advice for finding in self.blockages] or [self._advice]
             raise refuse(
                 "mapping",
-                f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){held}",
+                f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){immobile_note}",
                 f"{'; '.join(mend)}; stiffness, modes and response are available nevertheless",
             )
 

@@ -196,16 +196,16 @@ class LinearModel(CheckedFields):
         return tuple(channel.name for channel in self.inputs if "." not in channel.name)
 
 
-def _places(names: tuple[str, ...], known: Mapping[str, int], kind: str) -> list[int]:
-    require(dict.fromkeys(_unknown(name, known, kind) for name in names if name not in known))
-    return [known[name] for name in names]
+def _places(names: tuple[str, ...], by_name: Mapping[str, int], kind: str) -> list[int]:
+    require(dict.fromkeys(_unknown(name, by_name, kind) for name in names if name not in by_name))
+    return [by_name[name] for name in names]
 
 
-def _unknown(name: str, known: Iterable[str], kind: str) -> Finding:
+def _unknown(name: str, names: Iterable[str], kind: str) -> Finding:
     """The error for a name without a channel or, if all of its components are unknown, for its point."""
-    owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in known} - {""}
+    owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in names} - {""}
     if not owner or owner in owners:
-        return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, known))
+        return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, names))
     return Finding(owner, "the model has no point of this name", suggest_nearest(owner, owners))
 
 

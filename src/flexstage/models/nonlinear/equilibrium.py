@@ -124,17 +124,17 @@ def failure_reason(status: int, share: float) -> str:
     if status == Status.NOT_FOLLOWED:
         return f"equilibrium was followed to {share:.3g} of the path from the unloaded stage: a state beyond is not its continuation"
     what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
-    far = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the path to it"
-    return f"{what} under the whole load; {far}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
+    progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the path to it"
+    return f"{what} under the whole load; {progress}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
 def require_equilibrium(solution: State) -> None:
     """Refuse a case without an equilibrium that continues the unloaded stage, with the load of the critical point or path end."""
     if not bool(solution.converged):
         status, share = int(solution.status), float(solution.reached)
-        far = f": equilibrium was followed to {share:.3g} of them" if share else ""
-        known = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
-        what = failure_reason(status, share) if known else f"under its weight and loads no equilibrium was found{far}"
+        progress = f": equilibrium was followed to {share:.3g} of them" if share else ""
+        has_reason = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
+        what = failure_reason(status, share) if has_reason else f"under its weight and loads no equilibrium was found{progress}"
         raise refuse("stage", what, LESS)
 
 

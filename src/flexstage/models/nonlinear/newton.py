@@ -261,8 +261,8 @@ def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, 
     step = system.solved(-system.residual)
     size = motion(model, step, model.size)
     many = not isinstance(system.matrix, np.ndarray)
-    far = end_displacement(model, system.bent, step) if many else motion(model, step, model.reach)
-    share = np.minimum(1.0, options.limit / np.maximum(far, options.limit))
+    largest = end_displacement(model, system.bent, step) if many else motion(model, step, model.reach)
+    share = np.minimum(1.0, options.limit / np.maximum(largest, options.limit))
     after, inside = advance(model, pose, system.bent, step, share)
     return walk_tree(model, after, loads) if many else after, np.maximum(size, inside), lack(model, system)
 

@@ -137,14 +137,14 @@ def continued(start: Task, end: Task) -> EquilibriumSolution:
 
 def pose_distance(model: Nonlinear, one: Pose, other: Pose) -> float:
     """Return the distance of bodies from another pose, over the stage size and in radians."""
-    moved = np.max(np.abs(one.position - other.position)) / model.size
-    return float(max(moved, np.max(np.abs(one.turn - other.turn))))
+    shift = np.max(np.abs(one.position - other.position)) / model.size
+    return float(max(shift, np.max(np.abs(one.turn - other.turn))))
 
 
 def between(one: Pose, other: Pose) -> Array:
     """Return the body motion (n,) from one pose to another, without reactions."""
-    moved = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
-    return np.append(moved[0, :-1], np.zeros(other.held.shape[1]))
+    motions = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
+    return np.append(motions[0, :-1], np.zeros(other.held.shape[1]))
 
 
 def _stiffness(point: Point) -> float:
