@@ -56,14 +56,8 @@ def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
     >>> bool(np.all(law_and_mass(rod, steel)[0].stiffness == law(rod, steel).stiffness))
     True
     """
-    part_law = law_of(part)
-    if (
-        part_law is None
-        or part_law.beam is None
-        or part_law.diagonal is not None
-        or isinstance(part, Restricted)
-        or _has_fixed_end_modes(part)
-    ):
+    entry = law_of(part)
+    if entry is None or entry.beam is None or entry.diagonal is not None or isinstance(part, Restricted) or _has_fixed_end_modes(part):
         return law(part, material), mass(part, material)
     beam = beam_of(part, material)
     return Law((1.0 / beam.diagonal())[..., None] * np.eye(6)), consistent_mass(beam)
