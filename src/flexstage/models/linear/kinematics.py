@@ -42,14 +42,11 @@ class Kinematics(Result):
     """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
 
     The platform twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
-
-    - `actuation`: da/dxi (..., n, f); `sensing`: ds/dx (..., g, 6); `motion`: V (..., 6, f).
-    - `bodies`: motion of all body coordinates per xi (..., N, f).
-    - `strains`: deformation of each link per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
-    - `free`: the free freedoms of each link.
-    - `length` (...): scale that makes rotations comparable with translations.
-    - `blocked`: blockage of each immobile actuator.
-    - `gauge_units`: units of the readings (absent: m); `sums`: weights of the gauges in each sum of gauges.
+    `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f). `bodies` is the motion of all body coordinates
+    per xi (..., N, f). `strains` is the deformation of each link per xi (..., 6, f) in its frame (only intended freedoms and strokes
+    non-zero). `free` has the free freedoms of each link. `length` (...) is the scale that makes rotations comparable with translations.
+    `blocked` has the blockage of each immobile actuator. `gauge_units` are the units of the readings (absent: m), `sums` the weights of the
+    gauges in each sum of gauges.
 
     `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion. `thrust` (..., f, t) is the generalised force per
     unit of their input (`thrust_inputs`, N or A) on xi, V^T W.
