@@ -14,7 +14,7 @@ from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.loaded.stability import stability
 from flexstage.base.finding import DesignError
 from flexstage.base.units.scale import Y, mm
-from flexstage.beams.compliance import held_modes, law
+from flexstage.beams.compliance import fixed_end_modes, law
 from flexstage.beams.mass import law_and_mass, mass
 from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.checks import check
@@ -57,7 +57,7 @@ def unit(part):
 @pytest.mark.parametrize(("part", "count"), [(BEAM, 1), (ROD, 2)])
 def test_bending_modes_of_a_clamped_beam(part, count):
     """Euler: 22.3733, 61.6728, 120.903; shear and rotary inertia take less than 0.1 % at these lengths."""
-    found = [mode.squares**0.5 / unit(part) for mode in held_modes(part, STEEL) if mode.turned is not None]
+    found = [mode.squares**0.5 / unit(part) for mode in fixed_end_modes(part, STEEL) if mode.turned is not None]
     assert len(found) == count
     for each in found:
         np.testing.assert_allclose(each, CLAMPED, rtol=1e-3)
@@ -65,7 +65,7 @@ def test_bending_modes_of_a_clamped_beam(part, count):
 
 def test_twist_of_a_round_rod():
     """n pi (G / rho)^(1/2) / L: a circle does not warp, its moment of inertia is its torsion constant."""
-    twist = held_modes(ROD, STEEL)[-1].squares ** 0.5
+    twist = fixed_end_modes(ROD, STEEL)[-1].squares ** 0.5
     np.testing.assert_allclose(twist, np.arange(1, 4) * np.pi / ROD.length * (STEEL.shear / STEEL.density) ** 0.5, rtol=1e-8)
 
 
@@ -109,8 +109,8 @@ def test_a_wide_short_leaf_is_a_plate():
     ratios = []
     for width in (0.5, 2.0, 10.0, 50.0, 200.0):
         part = replace(LEAF, length=200 * mm, width=width * mm)
-        bending, twist = (mode.squares**0.5 for mode in held_modes(part, STEEL))
-        plain, free = (mode.squares**0.5 for mode in held_modes(replace(part, section=LeafSection.BEAM), STEEL))
+        bending, twist = (mode.squares**0.5 for mode in fixed_end_modes(part, STEEL))
+        plain, free = (mode.squares**0.5 for mode in fixed_end_modes(replace(part, section=LeafSection.BEAM), STEEL))
         ratios.append(bending[0] / plain[0])
         assert np.all(twist > free)
     assert ratios == sorted(ratios)
@@ -202,6 +202,6 @@ def test_modes_of_solids(size, order, error):
     fineness = Fineness(neck=2.5, block=2.5, grading=0.6, order=order)
     solid = read_solid(whole, Reduction(fineness, modes=12), solids()).model
     seen = np.sqrt(eigen(solid).values)[6:]
-    for held, allowed in zip(held_modes(part, STEEL), error, strict=True):
+    for held, allowed in zip(fixed_end_modes(part, STEEL), error, strict=True):
         for own in held.squares**0.5:
             assert seen[np.argmin(np.abs(seen - own))] == pytest.approx(own, rel=allowed)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexstage.beams.elasticity import AXES
-from flexstage.beams.validity import slot_of, validity
+from flexstage.beams.validity import hinge_dimensions, validity
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Profile, Straight
@@ -29,7 +29,7 @@ def test_errors_stated_are_right(kind: str, count: int) -> None:
         stated = validity(part, material=material).errors
         told += len(stated)
         found = hinge_compliance(part, material, Accuracy(error=0.0, orders=(3, 5), meshes=1, freedoms=40_000 if count == 1 else 130_000))
-        beam = slot_of(part, poisson).beam
+        beam = hinge_dimensions(part, poisson).beam
         for axis, error in stated.items():
             index = AXES.index(axis)
             true = beam[index] / found.compliance[index, index] - 1.0
@@ -47,5 +47,5 @@ def test_the_error_of_very_wide_hinges_is_right(profile: Profile, thickness: flo
     material = Material(young=1.0, poisson=0.33, density=1.0)
     part = Notch("m", thickness, width, profile)
     found = hinge_compliance(part, material, Accuracy(error=0.01, orders=(2, 3), meshes=1))
-    true = slot_of(part, 0.33).beam[5] / found.compliance[5, 5] - 1.0
+    true = hinge_dimensions(part, 0.33).beam[5] / found.compliance[5, 5] - 1.0
     assert float(validity(part, material=material).errors["rz"]) == pytest.approx(true, abs=0.01 * WITHIN)

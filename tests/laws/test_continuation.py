@@ -14,7 +14,7 @@ import flexstage as fs
 from flexstage.base.finding import LowerBoundError
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.nonlinear.elements.condense import system
-from flexstage.models.nonlinear.elements.hold import nothing
+from flexstage.models.nonlinear.elements.fixed_coordinates import no_coordinates
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.graph import System, advance, assemble
 from flexstage.models.nonlinear.paths.critical_load import Kind, critical_load, unstable_motions
@@ -81,7 +81,7 @@ def first_event(model: Nonlinear, step: float, count: int) -> float:
         inputs[0, index] = size
         return Loads(inputs, np.zeros((1, 3)), np.ones(1))
 
-    held, before = nothing(1), (0.0, 0.0)
+    held, before = no_coordinates(1), (0.0, 0.0)
     for number in range(count):
         here = assemble(model, pose, loads(load), held)
         motions, value = lowest(model, here)

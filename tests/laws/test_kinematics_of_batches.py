@@ -21,7 +21,7 @@ from flexstage.mechanism.mechanism import Link, Mechanism, Probe
 from flexstage.models.finite import forward_kinematics
 from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.elimination import eliminate, eliminate_each
-from flexstage.models.mapped import borne_compliance
+from flexstage.models.mapped import chain_compliance
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.freedom import ALL, Freedom
@@ -191,7 +191,7 @@ def first_reading(stage: Mechanism) -> np.ndarray:
 
 
 def borne(stage: Mechanism) -> np.ndarray:
-    found = borne_compliance(expand(stage), fs.ideal(stage), "pzt")
+    found = chain_compliance(expand(stage), fs.ideal(stage), "pzt")
     return np.array(np.nan) if found is None else np.asarray(found)
 
 

@@ -13,7 +13,7 @@ from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Unit
 from flexstage.models.linear.static import static_gain
-from flexstage.models.mapped import borne_compliance, computed_stiffness, mapped
+from flexstage.models.mapped import chain_compliance, computed_stiffness, mapped
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom
@@ -37,7 +37,7 @@ def test_what_bears_the_load_of_a_straight_strut_is_the_strut(mechanism):
         return  # redundant strokes: statics does not share a load among them
     for name, drive in assembly.actuators.items():
         if mechanism.placements[name].unit == "direct":
-            assert np.isclose(1.0 / borne_compliance(assembly, kinematics, name), computed_stiffness(assembly, drive), rtol=1e-6)
+            assert np.isclose(1.0 / chain_compliance(assembly, kinematics, name), computed_stiffness(assembly, drive), rtol=1e-6)
 
 
 def bent():

@@ -12,7 +12,7 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.processes.native import SWITCH
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.nonlinear.compiled import kernel
-from flexstage.models.nonlinear.elements.corotated import moved, resist, stiffen_ports
+from flexstage.models.nonlinear.elements.corotated import port_motion, resist, stiffen_ports
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.spatial.frame import COMPONENTS, FORCES
@@ -82,10 +82,10 @@ def test_the_frame_does_not_matter(model: Nonlinear) -> None:
     turned = resist(element, *placed(model, RIGID, shift, 0.2), RIGID @ gravity).reshape(-1, 3)
     np.testing.assert_allclose(turned, still @ RIGID.T, atol=1e-11 * np.max(np.abs(still)))
     position, turn = placed(model, RIGID, shift, 0.2)
-    found, step, size = moved(element, position, turn), 1e-6, 6 * len(element.bodies)
+    found, step, size = port_motion(element, position, turn), 1e-6, 6 * len(element.bodies)
     for column in range(size):
         by = step * np.eye(size)[column].reshape(-1, 6)
-        ends = [moved(element, position + sign * by[:, :3], exponential(sign * by[:, 3:]) @ turn).motion for sign in (1.0, -1.0)]
+        ends = [port_motion(element, position + sign * by[:, :3], exponential(sign * by[:, 3:]) @ turn).motion for sign in (1.0, -1.0)]
         np.testing.assert_allclose(found.rows[:, column], (ends[0] - ends[1]) / (2.0 * step), atol=1e-8)
 
 

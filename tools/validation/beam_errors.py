@@ -16,8 +16,8 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 from flexstage.base.number import Array
-from flexstage.beams.elasticity import AXES, LAWS, Numbers, Slot
-from flexstage.beams.validity import family_of, slot_of, validity, within
+from flexstage.beams.elasticity import AXES, LAWS, HingeDimensions, Numbers
+from flexstage.beams.validity import family_of, hinge_dimensions, validity, within
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -90,13 +90,13 @@ def computed(parts: list[tuple[Shaped, float]]) -> list[Array]:
     return [_YOUNG * np.diag(found.compliance) for found in hinges_from_cache(forms, ASKED, Ways()).values()]
 
 
-def stacked(slots: list[Slot]) -> Slot:
+def stacked(slots: list[HingeDimensions]) -> HingeDimensions:
     """Many hinges as one batch."""
     names = ("thickness", "width", "half", "along", "across", "poisson", "beam")
-    return Slot(*(np.stack([getattr(slot, name) for slot in slots]) for name in names))
+    return HingeDimensions(*(np.stack([getattr(slot, name) for slot in slots]) for name in names))
 
 
-def fitted(family: str, axis: str, slot: Slot, found: Array) -> Numbers:
+def fitted(family: str, axis: str, slot: HingeDimensions, found: Array) -> Numbers:
     """The numbers of a law from elements, robustly (soft L1, 1 %), from those in the code."""
     law, start = LAWS[family][axis]
     inside = within(family, axis, slot)
@@ -114,7 +114,11 @@ def fits() -> Iterator[str]:
     parts = [each for kind, count in COUNTS.items() for each in sampled(kind, count, SEEDS["fit"])]
     elements = computed(parts)
     for family, axes in LAWS.items():
-        own = [(slot_of(part, poisson), found) for (part, poisson), found in zip(parts, elements, strict=True) if family_of(part) == family]
+        own = [
+            (hinge_dimensions(part, poisson), found)
+            for (part, poisson), found in zip(parts, elements, strict=True)
+            if family_of(part) == family
+        ]
         slot, found = stacked([each for each, _ in own]), np.stack([each for _, each in own])
         for axis, (law, _) in axes.items():
             numbers = fitted(family, axis, slot, found)
@@ -129,7 +133,7 @@ def checks(count: int) -> Iterator[str]:
     parts = [each for kind in COUNTS for each in sampled(kind, count, SEEDS["check"])]
     worst: dict[tuple[str, str], list[float]] = {}
     for (part, poisson), found in zip(parts, computed(parts), strict=True):
-        beam = slot_of(part, poisson).beam
+        beam = hinge_dimensions(part, poisson).beam
         stated = validity(part, material=Material(young=_YOUNG, poisson=poisson, density=1.0)).errors
         for axis, error in stated.items():
             true = beam[AXES.index(axis)] / found[AXES.index(axis)] - 1.0

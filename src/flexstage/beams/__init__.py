@@ -2,10 +2,10 @@
 
 from flexstage.base.register import Register
 from flexstage.beams.amplified import AMPLIFIED, STEPPER
+from flexstage.beams.compliance_matrix import MATRIX
 from flexstage.beams.contact import CONTACT
 from flexstage.beams.cruciform import CRUCIFORM
 from flexstage.beams.force_actuator import FORCE_ACTUATOR
-from flexstage.beams.given import GIVEN
 from flexstage.beams.law import PartLaw
 from flexstage.beams.leaf import LEAF
 from flexstage.beams.membrane import MEMBRANE
@@ -42,7 +42,7 @@ _HINGES = {
     Membrane: MEMBRANE,
     Cruciform: CRUCIFORM,
 }
-_STATED = {ComplianceMatrix: GIVEN, Spring: SPRING, Contact: CONTACT}
+_STATED = {ComplianceMatrix: MATRIX, Spring: SPRING, Contact: CONTACT}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
 _OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})

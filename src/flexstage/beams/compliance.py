@@ -17,7 +17,7 @@ from flexstage.base.session import SESSION
 from flexstage.base.storage.digest import keep
 from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
-from flexstage.beams.held import Held, join
+from flexstage.beams.fixed_end_modes import FixedEndModes, join
 from flexstage.beams.law import PartLaw
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import ALL, Freedom, others
@@ -57,10 +57,10 @@ def compliance(part: Elastic, material: Material | None) -> Array:
     >>> compliance(Rod("steel", length=0.1, diameter=0.002), steel).shape
     (6, 6)
     """
-    known, stated = _law_of(part), _stated(part, material)
-    if stated is not None:
-        return np.linalg.inv(_regular(part, stated))
-    return _diagonal_matrix(_diagonal(part, material)) if known.compliance is None else known.compliance(part)
+    part_law, specified = _law_of(part), _stated(part, material)
+    if specified is not None:
+        return np.linalg.inv(_regular(part, specified))
+    return _diagonal_matrix(_diagonal(part, material)) if part_law.compliance is None else part_law.compliance(part)
 
 
 def stiffness(part: Elastic, material: Material | None) -> Array:
@@ -72,11 +72,11 @@ def stiffness(part: Elastic, material: Material | None) -> Array:
     >>> bool(np.allclose(stiffness(rod, steel) @ compliance(rod, steel), np.eye(6)))
     True
     """
-    known, stated = _law_of(part), _stated(part, material)
-    if stated is not None:
-        return stated
-    if known.compliance is not None:
-        return np.linalg.inv(known.compliance(part))
+    part_law, specified = _law_of(part), _stated(part, material)
+    if specified is not None:
+        return specified
+    if part_law.compliance is not None:
+        return np.linalg.inv(part_law.compliance(part))
     return _diagonal_matrix(1.0 / _diagonal(part, material))
 
 
@@ -94,8 +94,8 @@ def law(part: Part, material: Material | None) -> Law:
     if isinstance(part, Joint):
         return Law(np.zeros((6, 6)), locked_freedoms(part))
     if not isinstance(part, Restricted):
-        held = held_modes(part, material)
-        return Law(stiffness(part, material), inner=join(mode.squares for mode in held) if held else None)
+        modes = fixed_end_modes(part, material)
+        return Law(stiffness(part, material), inner=join(mode.squares for mode in modes) if modes else None)
     full = stiffness(part.part, material)
     kept, freed = _indices(part.elastic), _stiff_among(_indices(part.free), full)
     block = full[..., kept[:, None], kept]
@@ -116,28 +116,28 @@ def viscous_damping(part: Part) -> Array | None:
     >>> viscous_damping(VoiceCoil(force_constant=10.0, damping=2.0)).diagonal().tolist()
     [2.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
-    known = law_of(part)
-    if known is None or known.damping is None:
+    part_law = law_of(part)
+    if part_law is None or part_law.damping is None:
         return None
     kept: Array = np.array([freedom in part.elastic for freedom in ALL]) if isinstance(part, Restricted) else np.ones(6, dtype=bool)
-    own = np.where(kept[:, None] & kept, known.damping(inner(part)), 0.0)
+    own = np.where(kept[:, None] & kept, part_law.damping(inner(part)), 0.0)
     return own if np.any(own) else None
 
 
 @SESSION.keep(32)
-def held_modes(part: Elastic, material: Material | None) -> tuple[Held, ...]:
+def fixed_end_modes(part: Elastic, material: Material | None) -> tuple[FixedEndModes, ...]:
     """Compute the fixed-end modes of a part, `inner_modes` of them, at the stations of its beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
-    >>> [mode.axis for mode in held_modes(Leaf("steel", length=0.1, thickness=0.001, width=0.01, inner_modes=2), steel)]  # y, about x
+    >>> [mode.axis for mode in fixed_end_modes(Leaf("steel", length=0.1, thickness=0.001, width=0.01, inner_modes=2), steel)]  # y, about x
     [1, 3]
     """
-    known = law_of(part)
-    if part.inner_modes == 0 or known is None or known.held is None:
+    part_law = law_of(part)
+    if part.inner_modes == 0 or part_law is None or part_law.fixed_end_modes is None:
         return ()
     half = first_design(np.real(beam_of(part, material).points.position), 1)
-    return known.held(part, _required_material(part, material), np.concatenate([-half, half]) / half[-1])
+    return part_law.fixed_end_modes(part, _required_material(part, material), np.concatenate([-half, half]) / half[-1])
 
 
 def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
@@ -160,25 +160,25 @@ def beam_of(part: Part, material: Material | None) -> Beam:
     >>> beam_of(Piezo(stroke=1e-4, stiffness=1e7, length=0.1, diameter=0.01), None).section.is_axisymmetric
     True
     """
-    known = _law_of(part)
-    if known.beam is None:
+    part_law = _law_of(part)
+    if part_law.beam is None:
         raise _unknown(part)
-    return known.beam(part, _required_material(part, material) if known.needs_material else material)
+    return part_law.beam(part, _required_material(part, material) if part_law.needs_material else material)
 
 
 def _law_of(part: Part) -> PartLaw:
-    known = law_of(part)
-    if known is None:
+    part_law = law_of(part)
+    if part_law is None:
         raise _unknown(part)
-    return known
+    return part_law
 
 
 def _stated(part: Elastic, material: Material | None) -> Array | None:
     """The stiffness of a part whose law specifies a stiffness instead of a compliance."""
-    known = _law_of(part)
-    if known.material_stiffness is not None:
-        return known.material_stiffness(part, _required_material(part, material))
-    return None if known.stiffness is None else known.stiffness(part)
+    part_law = _law_of(part)
+    if part_law.material_stiffness is not None:
+        return part_law.material_stiffness(part, _required_material(part, material))
+    return None if part_law.stiffness is None else part_law.stiffness(part)
 
 
 def _unknown(part: Part) -> DesignError:
@@ -200,18 +200,18 @@ def _required_material(part: Part, material: Material | None) -> Material:
     return material
 
 
-def _regular(part: Elastic, stated: Array, freedoms: Array = _EVERY) -> Array:
+def _regular(part: Elastic, specified: Array, freedoms: Array = _EVERY) -> Array:
     """A non-singular stiffness (..., k, k) in some freedoms: NaN for singular designs; raises if the first design is singular."""
-    size = np.sqrt(np.max(np.abs(np.real(stated)), axis=-1))
+    size = np.sqrt(np.max(np.abs(np.real(specified)), axis=-1))
     size = np.where(size > 0.0, size, 1.0)
-    _, values, motions = np.linalg.svd(np.real(stated) / size[..., :, None] / size[..., None, :])
+    _, values, motions = np.linalg.svd(np.real(specified) / size[..., :, None] / size[..., None, :])
     none = np.asarray(values <= _SINGULAR * values[..., :1])
     if np.any(first_design(none, 1)):
         moved = np.max(np.abs(first_design(motions, 2)[first_design(none, 1)]), axis=0) > _NAMED
         names = ", ".join(ALL[index].value for index in freedoms[moved])
         what = f"singular stiffness in {names}, so that the compliance does not exist"
         raise refuse(f"a part of kind {part.kind}", what, "Specify a stiffness there, or use the lumped model, which needs none")
-    return np.where(np.any(none, axis=-1, keepdims=True)[..., None], np.nan, stated)
+    return np.where(np.any(none, axis=-1, keepdims=True)[..., None], np.nan, specified)
 
 
 def _stiff_among(freedoms: Array, stiffness: Array) -> Array:

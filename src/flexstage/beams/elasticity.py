@@ -25,7 +25,7 @@ Numbers = tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Slot:
+class HingeDimensions:
     """Dimensions of a hinge (...): thickness, width, half length, axes of its arcs, Poisson's ratio.
 
     `beam` (..., 6) is the diagonal of its compliance by beam theory times Young's modulus. Hinges without arcs do not use the arc axes.
@@ -69,64 +69,64 @@ class Slot:
         return 1.0 - self.poisson**2 / (1.0 + (scale * size / self.width) ** power)
 
 
-Law = Callable[[Slot, Numbers], Array]
+Law = Callable[[HingeDimensions, Numbers], Array]
 """Compliance along or about an axis times Young's modulus, as a function of the fitted coefficients."""
 
 
-def notch_x(slot: Slot, p: Numbers) -> Array:
+def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
     """Tension: the root compliance d(t/R) / (E b), and prevented contraction."""
-    root, flat = slot.root, slot.flatness
+    root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
-    return slot.plane_strain(p[3], p[4], slot.half) * (slot.beam[..., 0] + yielded / slot.width)
+    return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
 
 
-def notch_y(slot: Slot, p: Numbers) -> Array:
+def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
     """Transverse: the roots, bending with prevented contraction, and the block, subtracted as a beam although it is a plate."""
-    root, flat = slot.root, slot.flatness
+    root, flat = hinge.root, hinge.flatness
     circle = (p[0] + p[1] * root + p[2] * root**2 + p[3] * root**3) * flat ** p[9]
     yielded = circle + (flat - 1.0) * (p[10] + p[11] * root + p[12] * root**2)
-    yielded = yielded * (1.0 + p[8] * (slot.poisson - 0.3)) / (root**2 * slot.width)
-    bent = slot.plane_strain(p[4], p[5], np.sqrt(slot.thickness * slot.radius)) * (slot.beam[..., 1] - slot.shear_share)
-    return bent + slot.shear_share + yielded - _block_as_plate(slot, p[6], p[7])
+    yielded = yielded * (1.0 + p[8] * (hinge.poisson - 0.3)) / (root**2 * hinge.width)
+    bent = hinge.plane_strain(p[4], p[5], np.sqrt(hinge.thickness * hinge.radius)) * (hinge.beam[..., 1] - hinge.shear_share)
+    return bent + hinge.shear_share + yielded - _block_as_plate(hinge, p[6], p[7])
 
 
-def notch_ry(slot: Slot, p: Numbers) -> Array:
+def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending about the thickness, as for tension; the roots of narrow hinges are stiffer."""
-    root, flat = slot.root, slot.flatness
+    root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
-    share = 1.0 / (1.0 + p[5] * (slot.along / slot.width) ** p[6])
-    return slot.plane_strain(p[3], p[4], slot.half) * (slot.beam[..., 4] + 12.0 / slot.width**3 * share * yielded)
+    share = 1.0 / (1.0 + p[5] * (hinge.along / hinge.width) ** p[6])
+    return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 4] + 12.0 / hinge.width**3 * share * yielded)
 
 
-def notch_rz(slot: Slot, p: Numbers) -> Array:
+def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending: the root rotation, proportional to t/R for small t/R, and larger for a larger Poisson's ratio."""
-    neck = np.sqrt(slot.thickness * slot.radius)
-    turned = _root_rotation(slot, p) * slot.flatness ** p[4] * (1.0 + p[5] * (slot.poisson - 0.3))
-    return slot.plane_strain(p[2], p[3], neck) * (slot.beam[..., 5] + turned)
+    neck = np.sqrt(hinge.thickness * hinge.radius)
+    turned = _root_rotation(hinge, p) * hinge.flatness ** p[4] * (1.0 + p[5] * (hinge.poisson - 0.3))
+    return hinge.plane_strain(p[2], p[3], neck) * (hinge.beam[..., 5] + turned)
 
 
-def fillet_y(slot: Slot, p: Numbers) -> Array:
+def fillet_y(hinge: HingeDimensions, p: Numbers) -> Array:
     """Transverse compliance of a fillet: plate action if wide, root rotation at its arms, and the block as for a notch."""
-    bent = _plate_share(slot, shear_factor, p[3], p[4]) * (slot.beam[..., 1] - slot.shear_share)
-    turned = _root_rotation(slot, p) * (slot.half - p[2] * slot.along) ** 2
-    return bent + slot.shear_share * (1.0 + p[5] * slot.root) + turned - _block_as_plate(slot, p[6], p[7])
+    bent = _plate_share(hinge, shear_factor, p[3], p[4]) * (hinge.beam[..., 1] - hinge.shear_share)
+    turned = _root_rotation(hinge, p) * (hinge.half - p[2] * hinge.along) ** 2
+    return bent + hinge.shear_share * (1.0 + p[5] * hinge.root) + turned - _block_as_plate(hinge, p[6], p[7])
 
 
-def fillet_rz(slot: Slot, p: Numbers) -> Array:
+def fillet_rz(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending of a fillet: plate action if wide, and root rotation."""
-    return _plate_share(slot, moment_factor, p[2], p[3]) * (slot.beam[..., 5] + _root_rotation(slot, p))
+    return _plate_share(hinge, moment_factor, p[2], p[3]) * (hinge.beam[..., 5] + _root_rotation(hinge, p))
 
 
-def _block_as_plate(slot: Slot, share: float, scale: float) -> Array:
+def _block_as_plate(hinge: HingeDimensions, share: float, scale: float) -> Array:
     """Excess compliance of the block as a beam over the block as a plate, which is subtracted too much next to a hinge."""
-    block = 2.0 / slot.width * (12.0 / slot.height**2 * (slot.half + 0.5 * slot.height) ** 2 + 1.0)
-    return slot.poisson**2 * share / (1.0 + (scale * slot.height / slot.width) ** 2) * block
+    block = 2.0 / hinge.width * (12.0 / hinge.height**2 * (hinge.half + 0.5 * hinge.height) ** 2 + 1.0)
+    return hinge.poisson**2 * share / (1.0 + (scale * hinge.height / hinge.width) ** 2) * block
 
 
-def _root_rotation(slot: Slot, p: Numbers) -> Array:
+def _root_rotation(hinge: HingeDimensions, p: Numbers) -> Array:
     """Root rotation, equal to that of the circular notch with the same throat."""
-    circle = np.asarray(wu_zhou_rotation(1.0, slot.width, slot.thickness, slot.radius))
-    return circle * (p[0] * slot.root**2 + p[1] * slot.root**3)
+    circle = np.asarray(wu_zhou_rotation(1.0, hinge.width, hinge.thickness, hinge.radius))
+    return circle * (p[0] * hinge.root**2 + p[1] * hinge.root**3)
 
 
 def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
@@ -141,63 +141,63 @@ def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Nu
     return 12.0 / (young * width * radius * radius) * (first + 12.0 * s**4 * (2.0 * s + 1.0) / q**5 * np.arctan(q))
 
 
-def bar_x(slot: Slot, p: Numbers) -> Array:
+def bar_x(hinge: HingeDimensions, p: Numbers) -> Array:
     """Tension between rigid faces, which restrain the contraction across the width and the thickness."""
-    wide, thick = _proportions(slot)
-    return slot.beam[..., 0] * (1.0 - slot.poisson**2 * (_saturate(p[0] * wide) + _saturate(p[1] * thick)))
+    wide, thick = _proportions(hinge)
+    return hinge.beam[..., 0] * (1.0 - hinge.poisson**2 * (_saturate(p[0] * wide) + _saturate(p[1] * thick)))
 
 
-def bar_z(slot: Slot, p: Numbers) -> Array:
+def bar_z(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending and shear in the plane of the width between rigid faces."""
-    wide, thick = _proportions(slot)
-    sheared = slot.shear_share / slot.beam[..., 2]
-    held = slot.poisson**2 * (p[0] * wide + p[1] * thick)
-    return slot.beam[..., 2] * (1.0 - (1.0 - sheared) * held - sheared * (p[2] * _saturate(p[3] * wide) + p[4] * slot.poisson))
+    wide, thick = _proportions(hinge)
+    sheared = hinge.shear_share / hinge.beam[..., 2]
+    restraint = hinge.poisson**2 * (p[0] * wide + p[1] * thick)
+    return hinge.beam[..., 2] * (1.0 - (1.0 - sheared) * restraint - sheared * (p[2] * _saturate(p[3] * wide) + p[4] * hinge.poisson))
 
 
-def bar_ry(slot: Slot, p: Numbers) -> Array:
+def bar_ry(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending in the plane of the width between rigid faces."""
-    wide, thick = _proportions(slot)
-    return slot.beam[..., 4] * (1.0 - slot.poisson**2 * (p[0] * wide + p[1] * thick))
+    wide, thick = _proportions(hinge)
+    return hinge.beam[..., 4] * (1.0 - hinge.poisson**2 * (p[0] * wide + p[1] * thick))
 
 
-def bar_y(slot: Slot, p: Numbers) -> Array:
+def bar_y(hinge: HingeDimensions, p: Numbers) -> Array:
     """Transverse compliance of a bar for which beam theory has no plate action."""
-    return slot.beam[..., 1] * (_plate_share(slot, shear_factor, 1.0, p[0]) - slot.poisson**2 * p[1] * _proportions(slot)[1])
+    return hinge.beam[..., 1] * (_plate_share(hinge, shear_factor, 1.0, p[0]) - hinge.poisson**2 * p[1] * _proportions(hinge)[1])
 
 
-def bar_rz(slot: Slot, p: Numbers) -> Array:
+def bar_rz(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending of a bar for which beam theory has no plate action."""
-    return slot.beam[..., 5] * _plate_share(slot, moment_factor, 1.0, p[0])
+    return hinge.beam[..., 5] * _plate_share(hinge, moment_factor, 1.0, p[0])
 
 
-def _plate_share(slot: Slot, factor: Callable[[Number, Number], Number], scale: float, power: float) -> Array:
+def _plate_share(hinge: HingeDimensions, factor: Callable[[Number, Number], Number], scale: float, power: float) -> Array:
     """Compliance of a plate over that of a beam; the effect decreases if the width is only a few thicknesses."""
-    wide = scale * _proportions(slot)[0]
-    stiffer = np.asarray(factor(1.0 / wide, slot.poisson))
-    return 1.0 - (1.0 - 1.0 / stiffer) / (1.0 + power * slot.thickness / slot.width)
+    wide = scale * _proportions(hinge)[0]
+    stiffer = np.asarray(factor(1.0 / wide, hinge.poisson))
+    return 1.0 - (1.0 - 1.0 / stiffer) / (1.0 + power * hinge.thickness / hinge.width)
 
 
-def leaf_y(slot: Slot, p: Numbers) -> Array:
+def leaf_y(hinge: HingeDimensions, p: Numbers) -> Array:
     """Transverse compliance of a leaf, including plate action."""
-    return slot.beam[..., 1] * (1.0 - p[0] * slot.poisson**2 * _proportions(slot)[0])
+    return hinge.beam[..., 1] * (1.0 - p[0] * hinge.poisson**2 * _proportions(hinge)[0])
 
 
-def leaf_rx(slot: Slot, p: Numbers) -> Array:
+def leaf_rx(hinge: HingeDimensions, p: Numbers) -> Array:
     """Torsion of a leaf: its strips bend with contraction restrained at the ends, from 1 to 1 / (1 - nu^2) stiffer with the width."""
-    wide, _ = _proportions(slot)
-    restrained = slot.poisson**2 / (1.0 - slot.poisson**2)
-    return slot.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
+    wide, _ = _proportions(hinge)
+    restrained = hinge.poisson**2 / (1.0 - hinge.poisson**2)
+    return hinge.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
 
 
-def leaf_rz(slot: Slot, p: Numbers) -> Array:
+def leaf_rz(hinge: HingeDimensions, p: Numbers) -> Array:
     """Bending of a leaf, including plate action."""
-    return slot.beam[..., 5] * (1.0 - p[0] * slot.poisson**2 * _proportions(slot)[0])
+    return hinge.beam[..., 5] * (1.0 - p[0] * hinge.poisson**2 * _proportions(hinge)[0])
 
 
-def _proportions(slot: Slot) -> tuple[Array, Array]:
+def _proportions(hinge: HingeDimensions) -> tuple[Array, Array]:
     """Width and thickness over the length."""
-    return slot.width / (2.0 * slot.half), slot.thickness / (2.0 * slot.half)
+    return hinge.width / (2.0 * hinge.half), hinge.thickness / (2.0 * hinge.half)
 
 
 def _saturate(share: Array) -> Array:
@@ -205,13 +205,13 @@ def _saturate(share: Array) -> Array:
     return share / (1.0 + share**3) ** (1.0 / 3.0)
 
 
-def toroidal(slot: Slot, p: Numbers, index: int) -> Array:
+def toroidal(hinge: HingeDimensions, p: Numbers, index: int) -> Array:
     """Compute the factor of a toroidal neck: larger compliance by exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
-    return slot.beam[..., index] * np.exp(slot.root**2 * (p[0] + p[1] * slot.root + p[2] * (slot.poisson - 0.3)))
+    return hinge.beam[..., index] * np.exp(hinge.root**2 * (p[0] + p[1] * hinge.root + p[2] * (hinge.poisson - 0.3)))
 
 
 def _toroid(index: int) -> Law:
-    return lambda slot, p: toroidal(slot, p, index)
+    return lambda hinge, p: toroidal(hinge, p, index)
 
 
 LAWS: Mapping[str, Mapping[str, tuple[Law, Numbers]]] = MappingProxyType(

@@ -49,8 +49,8 @@ def geometric(part: Part, material: Material | None) -> Geometric:
     1.2
     """
     own = inner(part)
-    known = law_of(own)
-    if isinstance(own, Joint) or (known is not None and known.beam is None):
+    part_law = law_of(own)
+    if isinstance(own, Joint) or (part_law is not None and part_law.beam is None):
         length = strut_of(own)
         return _of_point() if length is None else _of_strut(np.asarray(length))
     return _of_beam(beam_of(own, material), _SLENDER if isinstance(own, Shaped) and own.slender else _STOUT)

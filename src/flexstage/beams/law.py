@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam
-from flexstage.beams.held import Held
+from flexstage.beams.fixed_end_modes import FixedEndModes
 from flexstage.parts.material import Material
 
 _CALIBRATE = 'Specify a measured or computed 6x6 (kind = "compliance_matrix"), or expect a larger error than listed'
@@ -55,11 +55,11 @@ def _no_family(_: Any) -> str | None:
 class PartLaw:
     """Law of a kind: of a part and its material, or of a part only if `needs_material` is false.
 
-    A part is a `beam`, which defines its compliance, mass, geometric stiffness and stress; `diagonal` is its compliance (..., 6) if it
+    A part is a `beam`, which defines its compliance, mass, geometric stiffness and stress. `diagonal` is its compliance (..., 6) if it
     differs from the beam's (plates). All 6x6 are about the centre. A part without a beam has:
 
-    - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some freedoms (then no compliance need
-      exist), or `material_stiffness` if the stiffness depends on the material;
+    - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some freedoms;
+    - `material_stiffness` if the stiffness depends on the material;
     - `mass` (..., 12, 12).
 
     Optional entries:
@@ -82,5 +82,5 @@ class PartLaw:
     concentration: Callable[[Any], Number | None] | None = None
     ranges: Callable[[Any], tuple[Range, ...]] = _no_ranges
     family: Callable[[Any], str | None] = _no_family
-    held: Callable[[Any, Material, Array], tuple[Held, ...]] | None = None
+    fixed_end_modes: Callable[[Any, Material, Array], tuple[FixedEndModes, ...]] | None = None
     needs_material: bool = True

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam, flexibility, inertia, shear_across
-from flexstage.beams.held import Bending, Held, Plate, Torsion, held_bending, held_twist
+from flexstage.beams.fixed_end_modes import Bending, FixedEndModes, Plate, Torsion, fixed_end_bending, fixed_end_twist
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, stations
@@ -98,11 +98,11 @@ def _twisting(part: Leaf, points: Stations, section: Section, material: Material
     return Twisting(free * (1.0 - straight), -free * warping * wavenumber * sloping)
 
 
-def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]:
+def leaf_modes(part: Leaf, material: Material, places: Array) -> tuple[FixedEndModes, ...]:
     """Compute the fixed-end modes of a leaf, bending along y and twist: as a plate with restrained warping, or by its `section`.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
-    >>> bending, _ = leaf_held(Leaf("steel", length=0.1, thickness=0.0002, width=0.01, inner_modes=1), steel, np.zeros(1))
+    >>> bending, _ = leaf_modes(Leaf("steel", length=0.1, thickness=0.0002, width=0.01, inner_modes=1), steel, np.zeros(1))
     >>> round(float(bending.squares[0] ** 0.5 / (22.3733 * (200e9 * 0.0002**2 / 12.0 / 7750.0 / 0.1**4) ** 0.5)), 4)  # over a beam's
     1.0129
     """
@@ -114,7 +114,7 @@ def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]
     warped = section.area * section.area * section.area / 144.0
     warping = material.modulus * warped / (1.0 - material.contraction * material.contraction) if not part.warps else None
     torsion = Torsion(part.length, material.shear * section.torsion, density * section.polar, warping, density * warped, plate)
-    return held_bending(1, bending, part.inner_modes, places), held_twist(torsion, part.inner_modes, places)
+    return fixed_end_bending(1, bending, part.inner_modes, places), fixed_end_twist(torsion, part.inner_modes, places)
 
 
 def _ranges(part: Leaf) -> tuple[Range, ...]:
@@ -126,4 +126,4 @@ def _family(part: Leaf) -> str | None:
     return None if part.section is LeafSection.BEAM else "leaf"
 
 
-LEAF = PartLaw(leaf_beam, leaf_diagonal, concentration=lambda _: 1.0, ranges=_ranges, family=_family, held=leaf_held)
+LEAF = PartLaw(leaf_beam, leaf_diagonal, concentration=lambda _: 1.0, ranges=_ranges, family=_family, fixed_end_modes=leaf_modes)

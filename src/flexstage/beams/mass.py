@@ -12,8 +12,8 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.base.storage.digest import keep
 from flexstage.beams.beam import Beam
-from flexstage.beams.compliance import Law, beam_of, held_modes, law, law_of
-from flexstage.beams.held import Held, join
+from flexstage.beams.compliance import Law, beam_of, fixed_end_modes, law, law_of
+from flexstage.beams.fixed_end_modes import FixedEndModes, join
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.part import Elastic, Part, Restricted, inner
@@ -23,8 +23,8 @@ from flexstage.parts.part import Elastic, Part, Restricted, inner
 def mass(part: Part, material: Material | None) -> Array:
     """Compute the mass (..., 12, 12) of a part for the twists of its first and second end, both at its centre, in the link frame [SI].
 
-    The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K: S the compliance accumulated from the first end to
-    x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
+    The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K. S is the compliance accumulated from the first end
+    to x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
 
     It includes the material between the arc ends and gives a rigid motion the exact inertia of the solid. A `ComplianceMatrix` part has
     half its mass at each end; `Joint` and `Restricted` parts have none.
@@ -39,11 +39,11 @@ def mass(part: Part, material: Material | None) -> Array:
     """
     if isinstance(part, (Joint, Restricted)):
         return np.zeros((12, 12))
-    known = law_of(part)
-    if known is not None and known.mass is not None:
-        return known.mass(part)
+    part_law = law_of(part)
+    if part_law is not None and part_law.mass is not None:
+        return part_law.mass(part)
     beam = beam_of(part, material)
-    return _with_modes(beam, consistent_mass(beam), held_modes(part, material))
+    return _with_modes(beam, consistent_mass(beam), fixed_end_modes(part, material))
 
 
 @keep
@@ -56,14 +56,14 @@ def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
     >>> bool(np.all(law_and_mass(rod, steel)[0].stiffness == law(rod, steel).stiffness))
     True
     """
-    known = law_of(part)
-    if known is None or known.beam is None or known.diagonal is not None or isinstance(part, Restricted) or _asks_for_modes(part):
+    entry = law_of(part)
+    if entry is None or entry.beam is None or entry.diagonal is not None or isinstance(part, Restricted) or _has_fixed_end_modes(part):
         return law(part, material), mass(part, material)
     beam = beam_of(part, material)
     return Law((1.0 / beam.diagonal())[..., None] * np.eye(6)), consistent_mass(beam)
 
 
-def _asks_for_modes(part: Part) -> bool:
+def _has_fixed_end_modes(part: Part) -> bool:
     own = inner(part)
     return isinstance(own, Elastic) and own.inner_modes > 0
 
@@ -115,11 +115,11 @@ def _weights(beam: Beam) -> Array:
     return (2.0 * beam.points.rule.weights * beam.points.rate)[..., None] * beam.inertia
 
 
-def _with_modes(beam: Beam, ends: Array, held: tuple[Held, ...]) -> Array:
+def _with_modes(beam: Beam, ends: Array, modes: tuple[FixedEndModes, ...]) -> Array:
     """Mass (..., 12 + m, 12 + m) of the ends and of the fixed-end modes, of unit mass each."""
-    if not held:
+    if not modes:
         return ends
-    between = join(_shared(beam, mode) for mode in held)
+    between = join(_shared(beam, mode) for mode in modes)
     size = 12 + between.shape[-1]
     batch = np.broadcast_shapes(ends.shape[:-2], between.shape[:-2])
     result = np.zeros((*batch, size, size), dtype=np.result_type(ends, between))
@@ -128,12 +128,12 @@ def _with_modes(beam: Beam, ends: Array, held: tuple[Held, ...]) -> Array:
     return result
 
 
-def _shared(beam: Beam, held: Held) -> Array:
+def _shared(beam: Beam, fixed_end: FixedEndModes) -> Array:
     """Coupling mass (..., 12, n) of modes and end motions: integral of N^T w phi dx, phi (v, dv/dx), N the end motions."""
-    turning, sign = {1: (5, 1.0), 2: (4, -1.0), 3: (3, 1.0)}[held.axis]  # a slope of w along z turns about -y
-    modes = {held.axis: held.moved} | ({} if held.turned is None else {turning: sign * held.turned})
-    half, weight = held.moved.shape[-1] // 2, 0.5 * _weights(beam)
-    result = np.zeros((12, held.moved.shape[-2]))
+    turning, sign = {1: (5, 1.0), 2: (4, -1.0), 3: (3, 1.0)}[fixed_end.axis]  # a slope of w along z turns about -y
+    modes = {fixed_end.axis: fixed_end.moved} | ({} if fixed_end.turned is None else {turning: sign * fixed_end.turned})
+    half, weight = fixed_end.moved.shape[-1] // 2, 0.5 * _weights(beam)
+    result = np.zeros((12, fixed_end.moved.shape[-2]))
     for motions in _motions(beam):
         for place, rows in motions.items():
             for row in rows.keys() & modes.keys():

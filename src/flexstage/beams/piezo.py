@@ -18,7 +18,7 @@ from flexstage.parts.section import Circle, circle, cowper_circle
 
 
 @dataclass(frozen=True, eq=False)
-class _Cased(Circle):
+class _CasedStack(Circle):
     """A stack's ceramic in a casing, with the second moment that matches its bending rigidity."""
 
     moment: Number = 0.0
@@ -47,7 +47,7 @@ def piezo_beam(part: Piezo) -> Beam:
     cased: Circle = ceramic
     if part.bending_rigidity is not None:
         moment = np.asarray(part.bending_rigidity)[..., None] / young
-        cased = _Cased(ceramic.height, ceramic.width, ceramic.shear, moment)
+        cased = _CasedStack(ceramic.height, ceramic.width, ceramic.shear, moment)
     twisting = free_twist(cased, shear)
     return Beam(points, cased, flexibility(cased, young, shear, twisting), inertia(ceramic, density), twisting)
 

@@ -10,7 +10,7 @@ s depends little on nu. It is an interpolation, rational in L/b, between its lim
 leaves.
 
 Its constants are fitted to a converged Ritz solution of the thin plate (tests/analytic). They agree within 0.06 % with that solution for
-b/L from 0.03 to 8 and nu from 0.1 to 0.45, and within 0.08 % with the plate elements of reference B6.
+b/L from 0.03 to 8 and nu from 0.1 to 0.45. They agree within 0.08 % with the plate elements of reference B6.
 """
 
 from __future__ import annotations

@@ -17,8 +17,10 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
 
     R is a^2/c for an ellipse, the fillet radius for a corner-filleted hinge; a straight hinge has K_t = 1 (its corners are not described).
 
-    Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere): circular notch in bending
-    +1 to +2 %, in tension 0 to -13 %; fillets in bending +3 to +7 %, in tension -2 to -10 %.
+    Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere):
+
+    - circular notch: in bending +1 to +2 %, in tension 0 to -13 %;
+    - fillets: in bending +3 to +7 %, in tension -2 to -10 %.
 
     Parabolas, hyperbolas and the tips of a V use their throat radius too. The factor of a deep notch depends only on thickness and radius
     at the throat (Neuber, Kerbspannungslehre, 1958).

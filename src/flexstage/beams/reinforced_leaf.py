@@ -35,8 +35,8 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
 def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
     """Compute the diagonal (..., 6) of the compliance about the centre: the beam's, reduced by the plate action of its thin ends.
 
-    Each thin end, up to its fillet, is a leaf between two ends that cannot curve across it, with the factors of `beams.plate`: rotation by
-    the moment at its own middle, and shear.
+    Each thin end, up to its fillet, is a leaf between two ends that cannot curve across it, with the factors of `beams.plate`. It has a
+    rotation by the moment at its middle, and shear.
 
     The middle counts as stiff, which holds if it is twice as thick. The middle is a beam, free to curve across. With `section` beam no
     plate action is included.

@@ -35,8 +35,8 @@ def has_section(part: Part) -> bool:
     >>> has_section(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))
     True
     """
-    known = law_of(part)
-    return known is not None and known.concentration is not None and known.concentration(inner(part)) is not None
+    part_law = law_of(part)
+    return part_law is not None and part_law.concentration is not None and part_law.concentration(inner(part)) is not None
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
@@ -44,8 +44,9 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
 
     Beam theory at every station from end to end: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z.
 
-    sigma = |N|/A + |M_z| t/(2 I_z) + |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)), tau is the sum of the largest shear and
-    torsion stresses, and the result sqrt(sigma^2 + 3 tau^2).
+    sigma = |N|/A + |M_z| t/(2 I_z) + |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)).
+
+    tau is the sum of the largest shear and torsion stresses, and the result sqrt(sigma^2 + 3 tau^2).
 
     The maxima of a section are added although they occur at different points: an upper bound of the nominal stress. `None` for parts
     without a known section (piezo stacks have load limits instead) or without a known notch factor.
@@ -58,8 +59,8 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     (15.0, 15.0)
     """
     own = inner(part)
-    known = law_of(own)
-    factor = None if known is None or known.beam is None or known.concentration is None else known.concentration(own)
+    part_law = law_of(own)
+    factor = None if part_law is None or part_law.beam is None or part_law.concentration is None else part_law.concentration(own)
     if factor is None:  # guaranteed by has_section
         return None
     beam = beam_of(own, material)

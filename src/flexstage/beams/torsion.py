@@ -15,7 +15,9 @@ Limits:
 - square section: no warping.
 
 No interpolation is needed between them. Errors compared with 3-D finite elements of circular notches with rigid arc ends (tests/elsewhere):
-below 1 % at t/R = 0.2 for widths from 2 t to 10 t, 2 % at 30 t, +3 to +8 % for t/R from 0.5 to 1, and -6 % for a square throat.
+
+- t/R = 0.2: below 1 % for widths from 2 t to 10 t, 2 % at 30 t;
+- t/R from 0.5 to 1: +3 to +8 %, and -6 % for a square throat.
 
 Saint-Venant is up to 25 times, 12 C_y / b^2 up to 10 times too soft. The root compliance of full-height blocks makes a wide notch up to 20
 % softer still, as in tension.

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number, Table
 from flexstage.beams.compliance import compliance, law_of
-from flexstage.beams.elasticity import AXES, LAWS, Slot
+from flexstage.beams.elasticity import AXES, LAWS, HingeDimensions
 from flexstage.beams.law import Range
 from flexstage.beams.profiled import HIGHEST
 from flexstage.parts.material import Material
@@ -50,9 +50,9 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
     >>> round(float(hinge.errors["x"]), 2), hinge.findings
     (-0.16, ())
     """
-    known = None if isinstance(part, Restricted) else law_of(part)
-    ranges = () if known is None else known.ranges(part)
-    family = None if known is None else known.family(part)
+    part_law = None if isinstance(part, Restricted) else law_of(part)
+    ranges = () if part_law is None else part_law.ranges(part)
+    family = None if part_law is None else part_law.family(part)
     poisson = _POISSON if material is None else material.contraction
     errors = _errors(part, family, poisson) if family and isinstance(part, Shaped) else {}
     findings = (*(each.finding(where) for each in ranges), _plane_strain_finding(where, errors.get("rz"), poisson))
@@ -75,13 +75,13 @@ def _plane_strain_finding(where: str, error: Array | None, poisson: Number) -> F
 
 def _errors(part: Shaped, family: str, poisson: Number) -> dict[str, Array]:
     """Errors by component, NaN outside the compared range; components without any comparison are omitted."""
-    slot = slot_of(part, poisson)
-    errors = {"rx": np.zeros_like(slot.thickness)} if family == "bar" and part.throat.warping is None else {}
+    hinge = hinge_dimensions(part, poisson)
+    errors = {"rx": np.zeros_like(hinge.thickness)} if family == "bar" and part.throat.warping is None else {}
     with np.errstate(all="ignore"):  # values outside the range may be anything and are masked
         for axis, (law, numbers) in LAWS[family].items():
             index = AXES.index(axis)
-            value = slot.beam[..., index] / law(slot, numbers) - 1.0
-            errors[axis] = np.where(within(family, axis, slot), value, np.nan)
+            value = hinge.beam[..., index] / law(hinge, numbers) - 1.0
+            errors[axis] = np.where(within(family, axis, hinge), value, np.nan)
     return {axis: errors[axis] for axis in AXES if axis in errors and not np.all(np.isnan(errors[axis]))}
 
 
@@ -92,15 +92,15 @@ def family_of(part: Part) -> str | None:
     >>> family_of(Rod("steel", length=0.1, diameter=0.002))
     'bar'
     """
-    known = law_of(part)
-    return None if known is None else known.family(part)
+    part_law = law_of(part)
+    return None if part_law is None else part_law.family(part)
 
 
-def slot_of(part: Shaped, poisson: Number) -> Slot:
+def hinge_dimensions(part: Shaped, poisson: Number) -> HingeDimensions:
     """Build the dimensions of a part that the fitted laws use.
 
     >>> from flexstage.parts.rod import Rod
-    >>> float(slot_of(Rod("steel", length=0.1, diameter=0.002), 0.3).half)
+    >>> float(hinge_dimensions(Rod("steel", length=0.1, diameter=0.002), 0.3).half)
     0.05
     """
     thickness, width = _real(part.throat.height), _real(part.throat.width)
@@ -109,7 +109,7 @@ def slot_of(part: Shaped, poisson: Number) -> Slot:
     beam = np.real(np.diagonal(compliance(part, unit), axis1=-2, axis2=-1))
     sizes = (thickness, width, 0.5 * _real(part.span), along, across, _real(poisson))
     thickness, width, half, along, across, ratio, _ = np.broadcast_arrays(*sizes, beam[..., 0])
-    return Slot(thickness, width, half, along, across, ratio, beam)
+    return HingeDimensions(thickness, width, half, along, across, ratio, beam)
 
 
 def _axes(profile: Profile | None) -> tuple[Array, Array]:
@@ -119,32 +119,32 @@ def _axes(profile: Profile | None) -> tuple[Array, Array]:
     return radius, radius
 
 
-def within(family: str, axis: str, slot: Slot) -> Array:
+def within(family: str, axis: str, hinge: HingeDimensions) -> Array:
     """Whether the proportions and Poisson's ratio are within the comparison with elements.
 
     Bending about z has known limits: beam theory for thin throats, plane strain for wide ones. It has no bound on that side.
 
     >>> from flexstage.parts.rod import Rod
-    >>> bool(within("bar", "x", slot_of(Rod("steel", length=0.1, diameter=0.002), 0.45)))
+    >>> bool(within("bar", "x", hinge_dimensions(Rod("steel", length=0.1, diameter=0.002), 0.45)))
     False
     """
-    inside = _between(slot.poisson, (0.2, 0.4))
-    wide, tall = slot.width / slot.thickness, slot.width / slot.height
+    inside = _between(hinge.poisson, (0.2, 0.4))
+    wide, tall = hinge.width / hinge.thickness, hinge.width / hinge.height
     if family in {"notch", "fillet"}:
-        inside &= _between(slot.root**2, (0.0, 0.65 if axis == "y" else HIGHEST[family])) & _between(wide, (1.0, np.inf))
+        inside &= _between(hinge.root**2, (0.0, 0.65 if axis == "y" else HIGHEST[family])) & _between(wide, (1.0, np.inf))
     if family in {"notch", "fillet"} and axis != "rz":
-        inside &= _between(slot.root**2, (0.015, np.inf)) & _between(wide * slot.root, (0.0, 20.0))
+        inside &= _between(hinge.root**2, (0.015, np.inf)) & _between(wide * hinge.root, (0.0, 20.0))
         inside &= _between(tall, (0.0, 1.0 if axis == "y" else 3.0 if family == "notch" else 4.5))
     if family == "notch":
-        inside &= _between(slot.flatness, (0.2, 1.4)) & _between(slot.across / slot.thickness, (1.5 if axis == "y" else 1.0, np.inf))
+        inside &= _between(hinge.flatness, (0.2, 1.4)) & _between(hinge.across / hinge.thickness, (1.5 if axis == "y" else 1.0, np.inf))
     if family == "fillet":
-        inside &= _between((slot.half - slot.along) / slot.thickness, (0.0, 12.0))
+        inside &= _between((hinge.half - hinge.along) / hinge.thickness, (0.0, 12.0))
     if family == "toroid":
-        inside &= _between(slot.root**2, (0.015, HIGHEST[family]))
+        inside &= _between(hinge.root**2, (0.015, HIGHEST[family]))
     if family in {"bar", "leaf"}:
-        share = 0.5 * slot.width / slot.half
+        share = 0.5 * hinge.width / hinge.half
         inside &= _between(share, (0.0, {("bar", "z"): 1.5, ("bar", "rz"): np.inf}.get((family, axis), 3.0)))
-        inside &= _between(2.0 * slot.half / slot.thickness, (3.0 if family == "bar" else 10.0, np.inf))
+        inside &= _between(2.0 * hinge.half / hinge.thickness, (3.0 if family == "bar" else 10.0, np.inf))
     return inside & _between(1.0 / wide, (0.0, 0.2)) if family == "leaf" else inside
 
 

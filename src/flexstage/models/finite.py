@@ -134,8 +134,8 @@ class _Relative:
 def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
     """Compute the platform pose for strokes (..., n) [m] in the order of `kinematics.actuators`, from the nominal position.
 
-    Newton's method on the poses of all bodies. Leaves and rods shorten with their deflection w and slope t as in the beam constraint model,
-    0.6 w^2/L - 0.1 w t + L t^2/15 (Awtar, Slocum & Sevincer 2007); the pivots of other links are fixed.
+    Newton's method on the poses of all bodies. Leaves and rods shorten with their deflection w and slope t as in the beam constraint model
+    (Awtar, Slocum & Sevincer 2007), by 0.6 w^2/L - 0.1 w t + L t^2/15. The pivots of other links are fixed.
 
     Raises `DesignError` if the strokes do not determine the platform or the iteration does not converge.
 

@@ -82,11 +82,11 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()
     [1.0, 0.0, 0.0, 0.0, -0.025, 0.085]
     """
-    return _kept(Same(mechanism)) if is_single(expand(mechanism)) else _read(mechanism)
+    return _cached(Same(mechanism)) if is_single(expand(mechanism)) else _read(mechanism)
 
 
 @SESSION.keep(2)
-def _kept(key: Same) -> Kinematics:
+def _cached(key: Same) -> Kinematics:
     """Result of one design, cached for further calls with the same description."""
     return _read(key.mechanism)
 
@@ -367,14 +367,14 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], idle
 def _sense(graph: _Graph, solution: Elimination, columns: list[int], idle_columns: list[int], bodies: Array) -> Array:
     """The body motions (..., N, f) for gauges and force actuators.
 
-    Free internal modes that one of them sees store the least energy in the links they strain: so do forces on idle bodies reach the
-    platform.
+    Free internal modes that one of them sees have minimal energy in the links they strain. Forces on idle bodies reach the platform in this
+    way.
     """
     size = graph.order.size
     driven, idle = solution.basis[..., :size, columns], solution.basis[..., :size, idle_columns]
     still = np.real(idle)
     rows = [*((name, _reading(graph, name)) for name in graph.assembly.gauges), *_elongations(graph).items()]
-    watching = [(name, np.real(row)) for name, row in rows if _see_alike(name, np.real(row), still)]
+    watching = [(name, np.real(row)) for name, row in rows if _sees_in_batch(name, np.real(row), still)]
     if not watching:
         return bodies
     energy, mixed = np.zeros((len(idle_columns), len(idle_columns))), np.zeros((len(idle_columns), len(columns)))
@@ -382,13 +382,13 @@ def _sense(graph: _Graph, solution: Elimination, columns: list[int], idle_column
         strain = graph.strain[..., place, :]
         force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
         energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ driven)
-    held, loose = _split_alike(np.real(energy))
+    stored, loose = _split_batch(np.real(energy))
     unresisted = [name for name, row in watching if np.any(_sees(row, still @ loose))]
     require(_undetermined_findings(graph, unresisted, first_design(still @ loose, 2)))
-    return driven - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
+    return driven - idle[..., stored] @ np.linalg.solve(energy[..., stored, :][..., stored], mixed[..., stored, :])
 
 
-def _see_alike(name: str, row: Array, motions: Array) -> bool:
+def _sees_in_batch(name: str, row: Array, motions: Array) -> bool:
     """`_sees`, required to be equal in all designs of a batch."""
     flags = np.ravel(_sees(row, motions))
     if np.any(flags != flags[0]):
@@ -419,15 +419,15 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
                 raise refuse(", ".join(watching), what, "Specify the stiffness, or move the gauge to the platform") from error
 
 
-def _split_alike(energy: Array) -> tuple[list[int], Array]:
+def _split_batch(energy: Array) -> tuple[list[int], Array]:
     """`_split_by_energy` of all designs (..., k, k), required to agree, and their combinations (..., k, l)."""
     splits = [_split_by_energy(each) for each in energy.reshape(-1, *energy.shape[-2:])]
-    held = splits[0][0]
+    stored = splits[0][0]
     for number, (other, _) in enumerate(splits):
-        if other != held:
+        if other != stored:
             raise unlike(number, "has other free internal modes with elastic resistance than the first")
     loose = np.stack([each for _, each in splits])
-    return held, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
+    return stored, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
 
 
 def _split_by_energy(energy: Array) -> tuple[list[int], Array]:

@@ -108,8 +108,11 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     - Locked freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion.
     - Free internal modes without effect keep their inertia, are removed with their zero modes, and are listed in `idle`.
 
-    Raises `DesignError` for a mechanism (K singular), naming the free bodies, for a stroke that locked freedoms block, and for a nominal
-    position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
+    Raises `DesignError`:
+
+    - for a mechanism (K singular), naming the free bodies;
+    - for a stroke that locked freedoms block;
+    - for a nominal position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
@@ -158,7 +161,7 @@ def _restricted(stage: _Stage, kept: Mapping[str, tuple[Freedoms, Freedoms]]) ->
 def _model(mechanism: Mechanism, stage: _Stage, masses: Masses) -> LinearModel:
     inertia = _inertia(mechanism, stage, masses)
     carried = _carrier_forces(stage, inertia)
-    kept = _keep(stage, inertia)
+    kept = _retain_motions(stage, inertia)
     basis = kept.basis
     force, imposed = _inputs(stage, kept.driven)
     output, feedthrough = _outputs(stage, imposed)
@@ -205,7 +208,7 @@ class _Idle:
 
 
 @dataclass(frozen=True, eq=False)
-class _Kept:
+class _RetainedMotions:
     """z = `basis` q + `driven` u: the retained motions (absent: all), and motions imposed by inputs on locked freedoms (absent: none)."""
 
     basis: Array | None
@@ -249,7 +252,7 @@ def _stage(mechanism: Mechanism, *, sparse: bool = False) -> _Stage:
     for name, element in assembly.superelements.items():
         ends[name] = tuple(twist_at(assembly, order, port.body, port.frame) for port in element.ports.values())
         strains[name] = _strain_of(assembly, order, element)
-    require(_endless(assembly, {name: item.stiffness for name, item in laws.items()}, "stiffness"))
+    require(_non_finite(assembly, {name: item.stiffness for name, item in laws.items()}, "stiffness"))
     locked = {name: item.locked for name, item in laws.items() if item.locked}
     return _Stage(assembly, order, ends, strains, locked, with_ground(assembly, order))
 
@@ -295,7 +298,7 @@ def _viscous(assembly: Assembly) -> dict[str, Array]:
     return {name: damping for name, damping in (*dampers.items(), *elements.items()) if damping is not None}
 
 
-def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:
+def _non_finite(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:
     """Links with non-finite stiffness or inertia in the first design, once per part, with the numbers of the part."""
     listed: set[str] = set()
     for name, value in values.items():
@@ -310,7 +313,7 @@ def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iter
             yield Finding(name, f"non-finite {what} for the numbers of part {link.link.part}: {value_list}", advice)
 
 
-def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> None:
+def _require_distinguishable(stage: _Stage, loose: Array, basis: Array | None) -> None:
     """Refuse stiffness ratios so large that rounding makes a motion with elastic deformation appear loose."""
     over = {
         name: np.tile(_OVER, (item.law.shape[-1] - stage.order.inner.get(name, 0)) // 6)[:, None] for name, item in stage.strains.items()
@@ -359,7 +362,7 @@ def _loss_factor(link: PlacedLink) -> Number:
     return 0.0 if value is None else value
 
 
-def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
+def _retain_motions(stage: _Stage, inertia: Mapping[str, Contribution]) -> _RetainedMotions:
     """Motions that satisfy the locked freedoms and have no momentum in free internal modes."""
     names = stage.order.coordinates
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in names])
@@ -378,14 +381,14 @@ def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
     named = _loose_coordinates(stage, loose, independent)
     _require_same_loose(stage, basis, independent, named)
     if not named:
-        return _Kept(basis, driven, tuple(names[index] for index in independent), None)
+        return _RetainedMotions(basis, driven, tuple(names[index] for index in independent), None)
     left = [index for index in range(len(independent)) if index not in named]
     full = np.eye(stage.order.size) if basis is None else basis
     idle = _idle(stage, inertia, full, tuple(names[independent[index]] for index in named), left=left, named=named)
     kept, driven = (
         None if motion is None else motion + idle.momentless(_momentum(inertia, motion)) for motion in (full[..., left], driven)
     )
-    return _Kept(kept, driven, tuple(names[independent[index]] for index in left), idle)
+    return _RetainedMotions(kept, driven, tuple(names[independent[index]] for index in left), idle)
 
 
 def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
@@ -405,11 +408,9 @@ def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array |
 def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
     """Errors of strokes (columns) that locked freedoms (rows) cannot follow."""
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
-        held = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
-        if held:
-            what = (
-                f"the stroke of actuator {name} is blocked: its axis is locked, and nothing gives way between it and {', '.join(held[:6])}"
-            )
+        blocking = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
+        if blocking:
+            what = f"the stroke of actuator {name} is blocked: no elastic freedom between its locked axis and {', '.join(blocking[:6])}"
             yield Finding(link, what, "Free one of these, or give it stiffness")
 
 
@@ -427,7 +428,7 @@ def _idle(
     small[..., named, :] = np.eye(len(named))
     motions = basis @ small
     mass = _transpose(motions) @ _momentum(inertia, motions)
-    heavy = _heavy_of_all(np.real(mass), _largest(inertia, np.real(motions), stage.order.coordinates))
+    heavy = _inertial_modes_of_batch(np.real(mass), _largest(inertia, np.real(motions), stage.order.coordinates))
     return _Idle(motions, names, heavy, mass[..., heavy, :][..., heavy])
 
 
@@ -445,18 +446,18 @@ def _largest(inertia: Mapping[str, Contribution], motions: Array, coordinates: t
     return total
 
 
-def _heavy_of_all(mass: Array, largest: Array) -> tuple[int, ...]:
-    """`_heavy` of the first design of (..., k, k); raises if another design differs."""
+def _inertial_modes_of_batch(mass: Array, largest: Array) -> tuple[int, ...]:
+    """`_inertial_modes` of the first design of (..., k, k); raises if another design differs."""
     batch, count = np.broadcast_shapes(mass.shape[:-2], largest.shape[:-1]), mass.shape[-1]
     masses = np.broadcast_to(mass, (*batch, count, count)).reshape(-1, count, count)
-    first, *others = map(_heavy, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
+    first, *others = map(_inertial_modes, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
     for number, heavy in enumerate(others, 1):
         if heavy != first:
             raise unlike(number, "has inertia in other free internal modes than the first")
     return first
 
 
-def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
+def _inertial_modes(mass: Array, largest: Array) -> tuple[int, ...]:
     """As many free internal modes as have independent inertia; M-orthogonality to these implies M-orthogonality to all."""
     some = np.flatnonzero(np.diag(mass) > _MASSLESS * largest)
     if not len(some):
@@ -489,7 +490,7 @@ def _loose(stage: _Stage, basis: Array | None) -> Array:
     values, loose = _softest(assemble(strains, stage.order.size if basis is None else basis.shape[-1]))
     if np.min(values, initial=0.0) < -SINGULAR:
         raise _unstable(stage, strains, loose[:, 0] if basis is None else np.real(first_design(basis, 2)) @ loose[:, 0])
-    _require_told_apart(stage, loose, basis)
+    _require_distinguishable(stage, loose, basis)
     return loose
 
 
@@ -528,7 +529,7 @@ def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[i
         if np.all(np.isfinite(designs[number])) and not np.array_equal(designs[number], designs[number - 1]):
             values, loose = _softest(designs[number])
             steady = np.min(values, initial=0.0) >= -SINGULAR  # other designs are NaN: `_stable`
-            if steady and (loose.shape[1] != len(named) or _moves_platform(loose, independent) or not _told_apart(loose, named)):
+            if steady and (loose.shape[1] != len(named) or _moves_platform(loose, independent) or not _are_distinguishable(loose, named)):
                 raise unlike(number, "has other motions without stiffness than the first")
 
 
@@ -549,10 +550,10 @@ def _critical_share(other: Array, steep: Array) -> float:
     root = np.sqrt(np.where(np.diag(other) > 0.0, np.diag(other), 1.0))
     other, steep = (each / root / root[:, None] for each in (other, steep))
     values, vectors = np.linalg.eigh(other)
-    loose, held = vectors[:, values < SINGULAR], vectors[:, values >= SINGULAR]
+    loose, stiff = vectors[:, values < SINGULAR], vectors[:, values >= SINGULAR]
     if np.max(np.diag(loose.T @ steep @ loose), initial=0.0) > SINGULAR * np.max(np.diag(steep)):
         return 0.0
-    half = held / np.sqrt(values[values >= SINGULAR])
+    half = stiff / np.sqrt(values[values >= SINGULAR])
     return float(1.0 / np.linalg.eigvalsh(half.T @ steep @ half)[-1])
 
 
@@ -573,14 +574,14 @@ def _largest_coordinate(stage: _Stage, motion: Array) -> str:
 def _stable(stage: _Stage, strains: Contributions, size: int) -> Contributions:
     """The contributions, with NaN for later designs of a batch that negative stiffnesses make unstable."""
     links = stage.assembly.links.items()
-    stated = next((name for name, link in links if (known := law_of(link.part)) is not None and known.stiffness is not None), None)
-    if stated is None or stage.order.sparse:
+    original = next((name for name, link in links if (known := law_of(link.part)) is not None and known.stiffness is not None), None)
+    if original is None or stage.order.sparse:
         return strains
     total = assemble(strains, size)
     if total.ndim == 2:
         return strains
     failed = np.isnan(cholesky(np.real(total))[..., :1, :1])
-    return {**strains, stated: replace(strains[stated], law=np.where(failed, np.nan, strains[stated].law))}
+    return {**strains, original: replace(strains[original], law=np.where(failed, np.nan, strains[original].law))}
 
 
 def _without_rounding(operator: Array, basis: Array | None) -> Array:
@@ -610,7 +611,7 @@ def _moves_platform(loose: Array, independent: tuple[int, ...]) -> bool:
     return bool(np.any(np.abs(_as_ones(loose)[platform]) > 1e-6))
 
 
-def _told_apart(loose: Array, named: list[int]) -> bool:
+def _are_distinguishable(loose: Array, named: list[int]) -> bool:
     """Whether the named coordinates distinguish the loose motions (n, k)."""
     return not named or bool(np.linalg.svd(_as_ones(loose)[named], compute_uv=False)[-1] > _APART)
 
@@ -644,7 +645,7 @@ def _inertia(mechanism: Mechanism, stage: _Stage, masses: Masses) -> dict[str, C
             result[name] = Contribution(stage.order.selector(name), matrix)
     if masses is Masses.ALL:
         own = _by_part(mass, stage.assembly)
-        require(_endless(stage.assembly, own, "inertia"))
+        require(_non_finite(stage.assembly, own, "inertia"))
         for name, matrix in own.items():
             result[_of_link(name)] = Contribution(_with_inner(stage.order, name, stage.ends[name]), matrix)
         for name, element in stage.assembly.superelements.items():

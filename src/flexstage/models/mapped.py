@@ -145,8 +145,8 @@ def _broadcast(*arrays: Array) -> list[Array]:
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
     """Return the stiffness of every actuator's unit in actuator coordinates [N/m], specified or computed.
 
-    A unit that is neither a straight strut nor a lever is the chain of links that carry its load (`borne_compliance`), if the `kinematics`
-    are given and statics determines those links.
+    Any other unit than a straight strut or a lever is the chain of links that carry its load (`chain_compliance`). This requires the
+    `kinematics`, and statics that determine those links.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -163,8 +163,8 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
         try:
             result[name] = specified if specified is not None else computed_stiffness(assembly, drive)
         except DesignError as error:
-            if kinematics is not None and (chain_compliance := borne_compliance(assembly, kinematics, name)) is not None:
-                result[name] = 1.0 / chain_compliance
+            if kinematics is not None and (from_chain := chain_compliance(assembly, kinematics, name)) is not None:
+                result[name] = 1.0 / from_chain
                 continue
             key = f"Specify units.{unit_of[copy]}.stiffness" if copy else "Place the actuator in a unit with a specified stiffness"
             findings += [Finding(item.where, item.what, f"{key}, or use the lumped model") for item in error.findings]
@@ -172,19 +172,19 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
     return result
 
 
-def borne_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
+def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
     """Compute the compliance [m/N] in an actuator coordinate of all links that carry its load: the sum of f^T C f, by virtual work.
 
-    f is the wrench in the locked freedoms of a link, in equilibrium with fixed strokes, under a platform wrench that loads only this
-    actuator, V^T w = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free freedoms carry nothing;
-    ideal joints are rigid.
+    f is the wrench in the locked freedoms of a link, in equilibrium with fixed strokes. The platform wrench loads only this actuator, V^T w
+    = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free freedoms carry nothing; ideal joints are
+    rigid.
 
     `None` if statics does not determine f (redundant constraints or a guide contribute), if a link has no known compliance, or if nothing
     is elastic.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
-    >>> round(1e-6 / float(borne_compliance(expand(stage), ideal(stage), "B1")), 2)  # as its straight strut
+    >>> round(1e-6 / float(chain_compliance(expand(stage), ideal(stage), "B1")), 2)  # as its straight strut
     10.3
     """
     order = layout(assembly)
@@ -244,7 +244,7 @@ def _equilibrium(rows: Array, loads: Array, rigid: Array, length: Number) -> Arr
     forces, bearing = np.zeros((len(full), full.shape[-1]), dtype=full.dtype), None
     for number, design in enumerate(full):
         if number == 0 or not np.array_equal(scaled[number], scaled[number - 1]):
-            bearing = _bearing(scaled[number], rigid)
+            bearing = _carrying_columns(scaled[number], rigid)
         if bearing is None:
             return None
         equations, chosen = bearing
@@ -252,7 +252,7 @@ def _equilibrium(rows: Array, loads: Array, rigid: Array, length: Number) -> Arr
     return forces[:, :count].reshape(*batch, count)
 
 
-def _bearing(system: Array, rigid: Array) -> tuple[Array, Array] | None:
+def _carrying_columns(system: Array, rigid: Array) -> tuple[Array, Array] | None:
     """Equations and columns of the constraints and other loads in one design (N, m + k) that balance the load in the last column."""
     count, target = len(rigid), system[:, -1]
     columns = _normal(system[:, :-1].T).T
@@ -282,7 +282,7 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
     """
     if np.any(np.real(actuator_of(assembly.links[drive].part).free_deformation)[..., 1:]):
         raise refuse(drive, "its stroke is not along its axis, which the series springs of this model require", "")
-    ways = _ways(assembly, drive)
+    ways = _links_at_bodies(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     if levers:
         return lever_stiffness(assembly, drive).stiffness
@@ -300,7 +300,7 @@ def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
     >>> round(float(lever_stiffness(expand(double_triangle()), "B4/pzt").gain) / 3, 3)  # Table 2: 585 of 600
     0.975
     """
-    ways = _ways(assembly, drive)
+    ways = _links_at_bodies(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     stop = frozenset({GROUND, PLATFORM, *levers})
     driving = _chain(ways, assembly, drive, stop)
@@ -324,7 +324,7 @@ def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
     )
 
 
-def _ways(assembly: Assembly, drive: str) -> dict[str, list[PlacedLink]]:
+def _links_at_bodies(assembly: Assembly, drive: str) -> dict[str, list[PlacedLink]]:
     """Links at each body, within the unit of the actuator."""
     owner = drive.rpartition("/")[0]
     ways: dict[str, list[PlacedLink]] = {}

@@ -543,7 +543,7 @@ def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
     for case in load_cases:
         try:
             factor, error = cases.case_critical(bench.nonlinear, case, tolerance=1e-9).factor, None  # slopes are taken of it
-        except critical_load.NothingGivesWayError:
+        except critical_load.NoCriticalLoadError:
             continue
         except LowerBoundError as found:
             factor, error = found.bound, found

@@ -25,7 +25,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.paths.critical_load import (
     Critical,
-    NothingGivesWayError,
+    NoCriticalLoadError,
     critical_load,
     require_continuation,
     unstable_motions,
@@ -232,7 +232,7 @@ def _place(name: str, value: float, unit: str) -> str:
 def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
     try:
         found = case_critical(model, case, most=most)
-    except NothingGivesWayError as error:
+    except NoCriticalLoadError as error:
         return CaseFactor(case.load, case.place, np.inf, "", "", error.findings[0].what, most)
     except DesignError as error:
         bound = error.bound if isinstance(error, LowerBoundError) else np.nan

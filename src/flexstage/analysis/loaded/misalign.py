@@ -22,7 +22,7 @@ from flexstage.models.nonlinear.elements.seat import SEAT, seat
 from flexstage.models.nonlinear.elements.strain import Strains, strains
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
 from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.paths.critical_load import NothingGivesWayError, critical_load, unstable_motions
+from flexstage.models.nonlinear.paths.critical_load import NoCriticalLoadError, critical_load, unstable_motions
 from flexstage.models.nonlinear.paths.load_path import continue_along
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import SolverOptions
@@ -196,7 +196,7 @@ class _Forced:
         gain, none = ({name: float(value) for name, value in self.hold(size).items()} for size in (sign, 0.0))
         try:
             found = sign * critical_load(self.model, gain, hold=none, most=most).factor
-        except NothingGivesWayError:
+        except NoCriticalLoadError:
             return np.nan, sign * most
         except LowerBoundError as error:
             return np.nan, sign * error.bound

@@ -17,7 +17,7 @@ from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
 from flexstage.beams.flexure.modes import FINE, gauss, polynomials, project
 from flexstage.beams.flexure.strip import LOADS, STRETCH_FOUR, STRETCH_TWO, fields
-from flexstage.beams.flexure.twist import curling_energy, held_modes, orthonormal
+from flexstage.beams.flexure.twist import curling_energy, orthonormal, restrained_twist_modes
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.section import Rectangle, Section, cowper_rectangle
@@ -200,7 +200,7 @@ def _leaf_twist(
     if warps:
         return np.eye(count, resolution.points), torsion * _squares(count)
     warping = float(material.modulus) * (0.0 if section.warping is None else section.warping) / (rigidity * length * length)
-    modes = orthonormal(held_modes(count, fine.points, 0.5 * np.sqrt(torsion / warping)), fine.weights)
+    modes = orthonormal(restrained_twist_modes(count, fine.points, 0.5 * np.sqrt(torsion / warping)), fine.weights)
     plate = 1.0 / (1.0 - float(material.contraction) ** 2)
     curled = curling_energy(float(section.width / length), float(material.contraction), modes)
     form = torsion * _product(modes.values, fine.weights) + plate * (warping * _product(modes.slopes, fine.weights) - curled)

@@ -52,5 +52,5 @@ def flexure_law(part: Part, material: Material | None, resolution: Resolution = 
     >>> flexure_law(Rod("steel", length=0.1, diameter=0.002), steel).signature
     (10, 3, 20, 0)
     """
-    known = _KINDS.get(type(part))
-    return None if known is None or material is None else known(part, material, resolution)
+    part_law = _KINDS.get(type(part))
+    return None if part_law is None or material is None else part_law(part, material, resolution)

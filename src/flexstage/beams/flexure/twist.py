@@ -28,12 +28,12 @@ class Modes:
     slopes: Array
 
 
-def held_modes(count: int, places: Array, decay: Array) -> Modes:
+def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
     """Compute the rates of twist with restrained warping (docs/nonlinear.md, 9): P_k - cosh(c u) / cosh(c), sinh for odd k; u = 2 s - 1.
 
     `decay` c (...) is half the length times sqrt(G J / (E C_w)). The exponentials cannot overflow.
 
-    >>> held_modes(2, np.array([0.0, 1.0]), np.array(500.0)).values.round(12).tolist()
+    >>> restrained_twist_modes(2, np.array([0.0, 1.0]), np.array(500.0)).values.round(12).tolist()
     [[0.0, 0.0], [0.0, 0.0]]
     """
     plain, rates = polynomials(count, places), slopes(count, places)
@@ -49,10 +49,10 @@ def held_modes(count: int, places: Array, decay: Array) -> Modes:
 def orthonormal(modes: Modes, weights: Array) -> Modes:
     """Orthonormalise the functions for the integral with `weights` (p,) at their points.
 
-    In short wide leaves the functions of `held_modes` are nearly dependent: amplitudes without effect would amplify rounding.
+    In short wide leaves the functions of `restrained_twist_modes` are nearly dependent: amplitudes without effect would amplify rounding.
 
     >>> rule = gauss(20)
-    >>> result = orthonormal(held_modes(3, rule.points, np.array(0.1)), rule.weights)
+    >>> result = orthonormal(restrained_twist_modes(3, rule.points, np.array(0.1)), rule.weights)
     >>> bool(np.allclose(result.values * rule.weights @ result.values.T, np.eye(3)))
     True
     """

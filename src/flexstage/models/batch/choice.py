@@ -1,7 +1,7 @@
 """Platform frequencies: the lowest at which the modes contribute a tenth of the platform's static compliance, in each direction.
 
-With phi the platform twist in a mass-normalised mode and C = sum phi phi^T / omega^2 its static compliance, H(f) is the sum over the modes
-up to f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
+The platform twist in a mass-normalised mode is phi, its static compliance C = sum phi phi^T / omega^2. H(f) is the sum over the modes up to
+f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
 
 The eigenvalues of H do not depend on units, reference point, basis of repeated modes, or modes above f.
 """
@@ -39,7 +39,7 @@ class Choice:
 
 
 @dataclass(frozen=True, eq=False)
-class Chosen:
+class ModeSelection:
     """`mask` (b, k) of the platform modes; `exact` (b,): as many as requested.
 
     If only some modes of a cluster are platform modes, those of largest participation represent them.
@@ -96,7 +96,7 @@ def participation(root: Array, motions: Array, values: Array) -> Array:
     return np.nan_to_num(parts, posinf=0.0, neginf=0.0)
 
 
-def choose(values: Array, parts: Array, choice: Choice) -> Chosen:
+def choose(values: Array, parts: Array, choice: Choice) -> ModeSelection:
     """Choose the modes of the platform frequencies from ascending eigenvalues (b, k) and their `participation` (b, 6, k).
 
     >>> parts = np.array([[[0.2, 0.0, 0.9], [0.0, 0.6, 0.3]]])
@@ -112,7 +112,7 @@ def choose(values: Array, parts: Array, choice: Choice) -> Chosen:
     order, rank = np.lexsort((-np.sum(parts**2, axis=1), first)), np.empty_like(first)
     np.put_along_axis(rank, order, np.broadcast_to(np.arange(rank.shape[1]), rank.shape), axis=1)
     mask = before + rank - first < after
-    return Chosen(mask, mask.sum(axis=1) == choice.count)
+    return ModeSelection(mask, mask.sum(axis=1) == choice.count)
 
 
 def groups(values: Array, gap: float) -> Array:

@@ -16,7 +16,7 @@ _SINGULAR = 1e-11
 
 
 @dataclass(frozen=True, eq=False)
-class Whole:
+class AllModes:
     """All modes of one design: `values` lambda (k,) and `shapes` (n, k); empty where K is singular.
 
     `parts` (6, k) is their participation in the platform compliance. Repeated modes are sorted by decreasing participation.
@@ -27,14 +27,14 @@ class Whole:
     parts: Array
 
 
-def whole(stiffness: Array, inertia: Array, rows: Array, cluster: float) -> Whole:
+def all_modes(stiffness: Array, inertia: Array, rows: Array, cluster: float) -> AllModes:
     """Compute every mode of one design; `rows` (6, n) is the platform twist, `cluster` the gap of repeated modes.
 
-    >>> whole(np.diag([4.0, 1.0]), np.eye(2), np.eye(6, 2), 1e-6).values.tolist()
+    >>> all_modes(np.diag([4.0, 1.0]), np.eye(2), np.eye(6, 2), 1e-6).values.tolist()
     [1.0, 4.0]
     """
     size = len(stiffness)
-    none = Whole(np.zeros(0), np.zeros((size, 0)), np.zeros((6, 0)))
+    none = AllModes(np.zeros(0), np.zeros((size, 0)), np.zeros((6, 0)))
     diagonal = np.diag(stiffness)
     if not (np.isfinite(stiffness).all() and np.isfinite(inertia).all()) or np.min(diagonal) <= 0.0:
         return none
@@ -48,7 +48,7 @@ def whole(stiffness: Array, inertia: Array, rows: Array, cluster: float) -> Whol
         own = group == number
         turn = np.linalg.svd(parts[:, own])[2].T
         parts[:, own], shapes[:, own] = parts[:, own] @ turn, shapes[:, own] @ turn
-    return Whole(solved.values, shapes, parts)
+    return AllModes(solved.values, shapes, parts)
 
 
 def _is_singular(scaled: Array) -> bool:
@@ -60,21 +60,21 @@ def _is_singular(scaled: Array) -> bool:
     return bool(np.linalg.eigvalsh(scaled)[0] < _SINGULAR)
 
 
-def whole_modes(model: LinearModel, count: int, cluster: float) -> list[Whole]:
+def modes_of_designs(model: LinearModel, count: int, cluster: float) -> list[AllModes]:
     """Compute every mode of each of `count` designs of a model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
-    >>> (whole_modes(lumped(double_triangle()), 1, 1e-6)[0].values[:2] ** 0.5 / (2.0 * np.pi)).round(1).tolist()
+    >>> (modes_of_designs(lumped(double_triangle()), 1, 1e-6)[0].values[:2] ** 0.5 / (2.0 * np.pi)).round(1).tolist()
     [106.0, 106.0]
     """
     size = len(model.coordinates)
     rows = np.eye(6, size) if model.is_sparse else platform_rows(model)
     matrices = (model.stiffness_matrix, model.inertia_matrix, rows)
     stiffness, inertia, twists = (np.broadcast_to(each, (count, *each.shape[-2:])) for each in matrices)
-    return [whole(stiffness[number], inertia[number], twists[number], cluster) for number in range(count)]
+    return [all_modes(stiffness[number], inertia[number], twists[number], cluster) for number in range(count)]
 
 
-def platform_values(modes: Whole, choice: Choice) -> Array:
+def platform_values(modes: AllModes, choice: Choice) -> Array:
     """Compute the eigenvalues (k,) of the platform modes of one design."""
     return modes.values[choose(modes.values[None], modes.parts[None], choice).mask[0]] if len(modes.values) else modes.values

@@ -19,7 +19,7 @@ from flexstage.base.number import Array
 from flexstage.base.processes.threads import one_thread
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.batch.choice import Choice, choose
-from flexstage.models.batch.dense import Whole, platform_values, whole_modes
+from flexstage.models.batch.dense import AllModes, modes_of_designs, platform_values
 from flexstage.models.batch.family import Family, describe, family, numbers_of
 from flexstage.models.batch.graph import eliminate_bodies
 from flexstage.models.batch.kernel import MODES, Start, kernel, kernel_tables, solve_designs
@@ -102,7 +102,7 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: Ranges | 
     model = lumped(family_.mechanism)  # raises `DesignError` for free motions of bodies
     if family_.topology.locked:
         return Plan(family_, choice, {})
-    (modes,) = whole_modes(model, 1, choice.cluster)
+    (modes,) = modes_of_designs(model, 1, choice.cluster)
     graph = eliminate_bodies(family_.topology)
     forces = (model.inertia_matrix @ modes.shapes).reshape(len(graph.order), 6, -1)[list(graph.order)]
     starts = tuple(_starts(modes, forces.reshape(modes.shapes.shape), choice))
@@ -110,7 +110,7 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: Ranges | 
     return Plan(family_, choice, kernel_tables(family_.topology, graph), starts, fitted)
 
 
-def _starts(modes: Whole, forces: Array, choice: Choice) -> list[Start]:
+def _starts(modes: AllModes, forces: Array, choice: Choice) -> list[Start]:
     """Starts with the modes that are needed, and with as many as there is room for; none if that is not fewer than all."""
     picked, values = choose(modes.values[None], modes.parts[None], choice), modes.values
     if not picked.exact[0] or choice.count > MODES:
@@ -138,8 +138,8 @@ def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
 
     They agree with `models.lumped` solved by dense matrices within 1e-6 (relative), proven for each design.
 
-    Invalid designs do not affect the others: for non-finite numbers, a stiffness that is not positive or outlines without a mass, the
-    `Status` says that no result exists.
+    Invalid designs do not affect the others: their `Status` says that no result exists. Causes are non-finite numbers, a stiffness that is
+    not positive, or outlines without a mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))
@@ -163,7 +163,7 @@ def _solve(plan_: Plan, values: Array, designs: Array, squares: Array, status: A
         for start in range(0, len(left), size):
             portion = left[start : start + size]
             model = lumped(describe(plan_.family, values[portion]))
-            for design, modes in zip(portion, whole_modes(model, len(portion), plan_.choice.cluster), strict=True):
+            for design, modes in zip(portion, modes_of_designs(model, len(portion), plan_.choice.cluster), strict=True):
                 result = platform_values(modes, plan_.choice)
                 if len(result) == plan_.choice.count:
                     squares[design], status[design] = result, Status.WHOLE

@@ -1,23 +1,23 @@
-/* Platform modes of many designs, several of them in each vector. A "lane" is one design; nothing that happens in a lane depends on the others, so
- * results do not depend on which designs are computed together. Stiffness K and inertia M are 6x6 blocks of bodies and of pairs of joined bodies,
- * eliminated in the order of graph.py; which modes are the platform's is explained in choice.py. The wanted modes are found singly:
+/* Platform modes of many designs, several per vector. A "lane" is one design. Lanes are independent, so that results do not depend on the other
+ * designs of a call. Stiffness K and inertia M are 6x6 blocks of bodies and of pairs of connected bodies, eliminated in the order of graph.py;
+ * choice.py explains which modes are platform modes. The requested modes are computed singly:
  *
- * 1. Z = (K - sigma M)^-1 F for the inertial forces F of the family's own modes, sigma amid their values; Rayleigh-Ritz on Z.
- * 2. For each wanted mode x of these, sigma just below its value and T = (K - sigma M)^-1 M: y = T x. Rayleigh-Ritz on the y alone, with
+ * 1. Z = (K - sigma M)^-1 F for the inertial forces F of the nominal modes, sigma between their values; Rayleigh-Ritz on Z.
+ * 2. For each requested mode x of these, sigma just below its value and T = (K - sigma M)^-1 M: y = T x. Rayleigh-Ritz on the y only, with
  *    K y = sigma M y + M x.
- * 3. T's Rayleigh quotient theta at x and the residual |y - theta x| in M bound what y has of modes whose lambda is `outer` or more, for which T is
- *    1 / (outer - sigma) at most: its sine is (sine of the angle between x and y) / ((outer - sigma) theta - 1) at most.
- * 4. As many pivots of K - shift M are negative as values lie below the shift: none is missed.
+ * 3. T's Rayleigh quotient theta at x and the residual |y - theta x| in M bound the part of y in modes whose lambda is `outer` or more. T is at
+ *    most 1 / (outer - sigma) there: its sine is at most (sine of the angle between x and y) / ((outer - sigma) theta - 1).
+ * 4. The number of negative pivots of K - shift M equals the number of values below the shift: none is missed.
  *
  * Own blocks of bodies are lower triangles by rows, edges 6x6 by rows; vectors are [body][6][m]; every entry is a vector of WIDTH designs.
  */
 #include "lanes.h"
 
 #define MOST 16     /* vectors of a block */
-#define MODES 12    /* modes that may be asked for */
+#define MODES 12    /* maximum requested modes */
 #define ROUNDING 1e-15
-#define BESIDE 1e-7 /* how far below its value a single mode's shift is: its matrix is never singular */
-#define ABOVE 5e-3  /* how far above the last of all values that are sought it is counted that there are no more */
+#define BESIDE 1e-7 /* relative distance of a single mode's shift below its value: its matrix is never singular */
+#define ABOVE 5e-3  /* relative distance above the last requested value of the shift that counts the values below */
 
 typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
@@ -26,35 +26,35 @@ typedef struct {
     int64_t designs, stride, bodies, links, edges, updates, numbers, parts, m, count, rounds, single;
     /* tables */
     const int64_t *link;    /* links x (part, place of first body, place of second body, edge); -1: the ground, no edge */
-    const int64_t *range;   /* bodies + 1: where the edges of each body begin */
+    const int64_t *range;   /* bodies + 1: offset of the edges of each body */
     const int64_t *later;   /* edges: the later body */
-    const int64_t *heavy;   /* edges: whether some link is on it */
-    const int64_t *product; /* bodies + 1: where the updates of each body begin */
+    const int64_t *heavy;   /* edges: whether it has a link */
+    const int64_t *product; /* bodies + 1: offset of the updates of each body */
     const int64_t *update;  /* updates x (edge, edge, target); -1: the later body's own block */
-    const int64_t *mirror;  /* numbers: the one that is the same by symmetry, or itself */
-    const int64_t *inertia; /* bodies: where the inertia of the body at that place begins among the numbers */
+    const int64_t *mirror;  /* numbers: index of the equal number by symmetry, or its own index */
+    const int64_t *inertia; /* bodies: offset of the body's inertia among the numbers */
     const int64_t *start;   /* stiffness, mass, turn, first, second */
-    const double *force;    /* 6 bodies x m: inertial forces of the modes to begin with */
+    const double *force;    /* 6 bodies x m: inertial forces of the start modes */
     const double *numbers_; /* numbers x designs */
     /* settings */
     double shift, value, cluster, together, threshold, margin, pivot;
     /* results */
     double *values;         /* count x stride, whole vectors of designs */
-    int64_t *good;          /* designs: 1, 0 for what is not proved */
+    int64_t *good;          /* designs: 1 if proven, else 0 */
 } Task;
 
 #define INLINE inline __attribute__((always_inline))
 #if defined(__clang__)
-#define UNROLL /* does so by itself, and worse where told to */
+#define UNROLL /* unrolls by default, and is slower with the pragma */
 #else
-#define UNROLL _Pragma("GCC unroll 36") /* small fixed loops: what they work on stays in registers */
+#define UNROLL _Pragma("GCC unroll 36") /* small fixed loops: their data stay in registers */
 #endif
 
 /* ---- lanes ---- */
 
 static inline lanes root(lanes a) { for (int i = 0; i < WIDTH; i++) a[i] = sqrt(a[i]); return a; }
 static inline lanes load(const double *p) { return *(const loose *)p; }
-/* So many; the last one stands for those that are not there. Apart, lest loops that hardly ever want it make room for it. */
+/* Load some lanes; the last design fills the others. A separate function, to keep registers of hot loops free. */
 static __attribute__((noinline, cold)) lanes load_some(const double *p, int64_t count)
 {
     lanes r;
@@ -63,7 +63,7 @@ static __attribute__((noinline, cold)) lanes load_some(const double *p, int64_t 
 }
 static inline void store(double *p, lanes a) { *(loose *)p = a; }
 
-/* What a row of numbers has for the designs from this one on; asks for what the next vector will want of it. */
+/* Load a row of numbers for the designs from this one on, and prefetch the next vector. */
 static inline lanes read_row(const Task *t, int64_t row, int64_t design)
 {
     const double *const at = t->numbers_ + row * t->designs + design;
@@ -169,7 +169,7 @@ static INLINE void upper(lanes *u, const lanes *a, const int n)
             UNROLL for (int k = 0; k < n; k++) u[s * n + k] -= a[LOWER(i, s)] * u[i * n + k];
 }
 
-/* `what` with three of `wide` columns from j on at once, then with what is left of them. */
+/* `what` for three of `wide` columns from j on at once, then for the remaining ones. */
 #define IN_THREES(what)                                                   \
     {                                                                     \
         int j = 0;                                                        \
@@ -179,7 +179,7 @@ static INLINE void upper(lanes *u, const lanes *a, const int n)
     }
 /* ---- assembly ---- */
 
-/* out (6x6) = 3x3 blocks of `from`, `stride` wide, turned into the stage's axes: R block R^T; of what is symmetric the upper half follows. */
+/* out (6x6) = 3x3 blocks of `from`, `stride` wide, rotated to stage axes: R block R^T; symmetric blocks fill the upper half. */
 static INLINE void turn(lanes *out, const lanes *from, const int stride, const lanes *r, const int *zero, const int symmetric)
 {
     for (int p = 0; p < 2; p++)
@@ -223,19 +223,19 @@ static INLINE void join(lanes *out, const lanes *p, const lanes *a, double sign,
         }
 }
 
-/* Which 3x3 blocks of a part's law and mass are zero in every design (4 and 16). */
+/* 3x3 blocks of a part's law and mass that are zero in every design (4 and 16). */
 typedef struct { int zero[20]; } Law;
 
 typedef struct {
     Law *law;
-    int fills;                       /* whether elimination makes edges */
+    int fills;                       /* whether elimination creates edges */
     int64_t design;                  /* the first of these designs */
     lanes *number;                   /* their numbers */
     lanes *stiff, *stiff_edge;       /* K */
     lanes *mass, *mass_edge;         /* M */
     lanes *other, *other_edge;       /* K - shift M factored */
-    lanes *now, *next, *force, *ahead, *start; /* blocks of vectors; those to begin with are the same in all lanes */
-    lanes root[OWN];                 /* L D L^T of one over the platform's compliance, as `invert` leaves it */
+    lanes *now, *next, *force, *ahead, *start; /* blocks of vectors; the start vectors are equal in all lanes */
+    lanes root[OWN];                 /* L D L^T of the inverse platform compliance, from `invert` */
 } Room;
 
 /* One of a link's own blocks. */
@@ -275,7 +275,7 @@ static void add_link(const Task *t, Room *w, int64_t l)
     add_edge(w->mass_edge + 36 * e, crossed, 6, r, none, arm[one], arm[two], 1.0, 0);
 }
 
-/* The 6x6 inertia (its lower triangle) of a body: of its mass, moments of mass (3) and moments of inertia (a lower triangle, 6). */
+/* 6x6 inertia (lower triangle) of a body from its mass, moments of mass (3) and moments of inertia (lower triangle, 6). */
 static INLINE void weigh(lanes *own, const lanes *n)
 {
     UNROLL for (int i = 0; i < OWN; i++) own[i] = all(0.0);
@@ -296,7 +296,7 @@ static void assemble(const Task *t, Room *w)
 
 /* ---- elimination ---- */
 
-/* Of pivots, in each lane, how many are negative, and the least over its own entry of K. */
+/* Number of negative pivots in each lane, and the minimum over its own entry of K. */
 typedef struct { lanes negative, least; } Count;
 
 static INLINE void count_pivots(Count *told, const lanes *pivot, const lanes *stiff)
@@ -308,7 +308,7 @@ static INLINE void count_pivots(Count *told, const lanes *pivot, const lanes *st
     }
 }
 
-/* A product of two edges of body v, which elimination subtracts from what is between later bodies. */
+/* Product of two edges of body v, which elimination subtracts from the block of two later bodies. */
 static INLINE void join_update(Room *w, int64_t v, const int64_t *edges)
 {
     const lanes *own = w->other + OWN * v, *x = w->other_edge + 36 * edges[0], *y = w->other_edge + 36 * edges[1];
@@ -319,7 +319,7 @@ static INLINE void join_update(Room *w, int64_t v, const int64_t *edges)
     }
 }
 
-/* A body: of its own block K - shift M, less what bodies before it left, is at hand. */
+/* Eliminate a body, whose own block K - shift M includes the updates of previous bodies. */
 static INLINE void eliminate_body(const Task *t, Room *w, int64_t v, lanes shift, Count *told)
 {
     lanes pivot[6], *own = w->other + OWN * v;
@@ -334,7 +334,7 @@ static INLINE void eliminate_body(const Task *t, Room *w, int64_t v, lanes shift
     }
 }
 
-/* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves; what is told of pivots. */
+/* w->other, w->other_edge = K - shift M = L D L^T: own blocks from `invert`, edges times L^-1; returns the pivot counts. */
 static void eliminate(const Task *t, Room *w, lanes shift, Count *told)
 {
     for (int64_t i = 0; i < OWN * t->bodies; i++) w->other[i] = w->stiff[i] - shift * w->mass[i];
@@ -358,7 +358,7 @@ static INLINE void forward(const Task *t, const Room *w, lanes *x, int64_t v, in
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) multiply(ROWS(x, t->later[e]), w->other_edge + 36 * e, u, m, TURNED, 1, n);
 }
 
-/* The same backward, and what the body adds to y = M x. */
+/* The same backward, and the contribution of the body to y = M x. */
 static INLINE void backward(const Task *t, const Room *w, lanes *x, lanes *y, int64_t v, int m, int j, const int n)
 {
     const lanes *a = w->other + OWN * v;
@@ -405,10 +405,10 @@ static INLINE lanes dot(const lanes *x, const lanes *y, int64_t rows)
 
 /* ---- Rayleigh-Ritz ---- */
 
-/* Entry (r, i) of m vectors: they stand side by side (row m, column 1) or one after the other (row 1, column n). */
+/* Entry (r, i) of m vectors: side by side (row m, column 1) or one after the other (row 1, column n). */
 typedef struct { int64_t row, column; } Layout;
 
-/* Dots of ni vectors x from i0 on with nj of y and of z from j0 on, or (`half`) the lower half of them; z is the same in all lanes where it is `plain`. */
+/* Dots of ni vectors x from i0 on with nj of y and of z from j0 on, or (`half`) the lower half of them; z is equal in all lanes if `plain`. */
 static INLINE void dots(
     int64_t n, int m, Layout at, lanes *g, lanes *h, const lanes *x, const lanes *y, const lanes *z, const double *plain, int i0, int j0, const int ni, const int nj, const int half)
 {
@@ -459,7 +459,7 @@ static INLINE void blends(int64_t n, int m, Layout at, int64_t next, lanes *y, c
     }
 }
 
-/* y = x q, the columns of it from c to before `count`, one after the other, each `next` further on. */
+/* y = x q, for columns c to `count` - 1, one after the other, at distance `next`. */
 static INLINE void blend(int64_t n, int m, Layout at, int64_t next, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int c, int count)
 {
     for (; c + 3 <= count; c += 3) blends(n, m, at, next, y, x, q, c, 3);
@@ -467,7 +467,7 @@ static INLINE void blend(int64_t n, int m, Layout at, int64_t next, lanes *restr
     else if (count - c == 1) blends(n, m, at, next, y, x, q, c, 1);
 }
 
-/* Eigenvalues on the diagonal of a and vectors in v (columns), by Jacobi's rotations; those of a lane stop when they are done. */
+/* Eigenvalues on the diagonal of a and vectors in v (columns), by Jacobi rotations; each lane stops individually. */
 static INLINE void jacobi(const int m, lanes *a, lanes *v, double least)
 {
     for (int i = 0; i < m * m; i++) v[i] = all(i % (m + 1) ? 0.0 : 1.0);
@@ -480,7 +480,7 @@ static INLINE void jacobi(const int m, lanes *a, lanes *v, double least)
                 if (!any(turn)) continue;
                 moved = 1;
                 const lanes two = pick(turn, o + o, all(0.0)), apart = e - d, far = root(apart * apart + two * two);
-                const lanes t = pick(turn, two / pick(apart < 0.0, apart - far, apart + far), all(0.0)); /* tangent of the angle that makes o nought */
+                const lanes t = pick(turn, two / pick(apart < 0.0, apart - far, apart + far), all(0.0)); /* tangent of the angle that makes o zero */
                 const lanes c = 1.0 / root(t * t + 1.0), s = t * c;
                 a[p * m + p] = d - t * o, a[q * m + q] = e + t * o;
                 a[p * m + q] = a[q * m + p] = pick(turn, all(0.0), o);
@@ -532,7 +532,7 @@ static INLINE void small(const int m, lanes *stiff, lanes *mass, lanes *values, 
             for (int k = i + 1; k < m; k++) s -= mass[k * m + i] * turned[k * m + c];
             turned[i * m + c] = s * mass[i * m + i];
         }
-    marks other = {0}; /* lanes in which they are not in order */
+    marks other = {0}; /* lanes that are not in order */
     for (int c = 0; c < m; c++) {
         values[c] = stiff[c * (m + 1)];
         if (c) other |= ~(values[c - 1] <= values[c]);
@@ -553,11 +553,11 @@ static INLINE void small(const int m, lanes *stiff, lanes *mass, lanes *values, 
     }
 }
 
-/* Of single modes: the shift of each, the Rayleigh quotient of (K - shift M)^-1 M, the sine of the angle between a vector and what that makes of it,
- * how much of each is in each of the modes, and the modes' participation in the platform's compliance. */
+/* Of single modes: the shift of each, the Rayleigh quotient of (K - shift M)^-1 M, the sine of the angle between a vector and its image,
+ * the part of each in each of the modes, and the modal participation in the platform compliance. */
 typedef struct { lanes values[MOST], shift[MOST], quotient[MOST], sine[MOST], part[MOST * MOST], mix[MOST * MOST], gain[MOST * 6]; } Ritz;
 
-/* Rayleigh-Ritz on (K - shift M)^-1 times the forces to begin with: all values, and M times the modes that are wanted in w->next. */
+/* Rayleigh-Ritz on (K - shift M)^-1 times the start forces: all values, and M times the requested modes in w->next. */
 static INLINE void begin(const Task *t, Room *w, Ritz *out, const int m, const int single)
 {
     const int64_t n = 6 * t->bodies;
@@ -569,7 +569,7 @@ static INLINE void begin(const Task *t, Room *w, Ritz *out, const int m, const i
     blend(n, m, (Layout){m, 1}, n, w->next, w->now, q, 0, single);
 }
 
-/* Rayleigh-Ritz on single modes in w->ahead: shapes in w->now; M times them are in w->force, M times what they were made of in w->next. */
+/* Rayleigh-Ritz on single modes in w->ahead: shapes in w->now; M times them are in w->force, M times their source in w->next. */
 static INLINE void combine(const Task *t, Room *w, Ritz *known, const int m)
 {
     const int64_t n = 6 * t->bodies;
@@ -592,8 +592,8 @@ static INLINE void combine(const Task *t, Room *w, Ritz *known, const int m)
     }
 }
 
-/* The wanted modes one by one, of M times them in w->next, by a step of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them:
- * to shapes (single, 6 bodies) in w->now. What is of other modes falls like the value's distance from the shift over theirs. */
+/* The requested modes one by one, from M times them in w->next, by a step of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them:
+ * to shapes (single, 6 bodies) in w->now. The part of other modes decreases like the distance of the value from the shift over theirs. */
 static void polish(const Task *t, Room *w, Ritz *known)
 {
     const int m = (int)t->single;
@@ -610,9 +610,9 @@ static void polish(const Task *t, Room *w, Ritz *known)
     combine(t, w, known, m);
 }
 
-/* ---- which modes are the platform's, one design at a time ---- */
+/* ---- selection of the platform modes, one design at a time ---- */
 
-typedef struct { int done, below, mask[MOST]; double shift; } Verdict; /* `mask`: which modes are the platform's */
+typedef struct { int done, below, mask[MOST]; double shift; } Verdict; /* `mask`: platform modes */
 
 static int apart(const double *values, int m, int needed, double together)
 {
@@ -663,9 +663,9 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
     int first = single;
     while (first > needed && apart(value, m, first, t->together) != first) first--;
     if (taken != count || needed > first || apart(value, m, first, t->together) != first) return;
-    if (first == m) value[m] = value[m - 1] * (1.0 + 10.0 * ABOVE); /* no value beyond is at hand: that there is none up to a little above these is counted */
+    if (first == m) value[m] = value[m - 1] * (1.0 + 10.0 * ABOVE); /* no further value: the count shows that there is none up to slightly above these */
     out->below = first, out->shift = value[first - 1] + 0.1 * (value[first] - value[first - 1]);
-    /* What of a single vector is of modes beyond: it has gone through (K - shift M)^-1 M, whose values there are 1 / (outer - shift) at most. */
+    /* Part of a single vector in modes beyond, after (K - shift M)^-1 M, whose values there are at most 1 / (outer - shift). */
     const double outer = out->shift;
     double beyond[MOST];
     for (int k = 0; k < single; k++) {
@@ -719,10 +719,10 @@ static void designs(const Task *t, Room *w)
     for (int i = 0; i < t->count; i++) store(t->values + i * t->stride + design, value[i]);
 }
 
-/* ---- what of the numbers is the same in every design ---- */
+/* ---- numbers that are equal in every design ---- */
 
-/* Rows of numbers that are not the same in all designs, and how many; the others go where they are used, once. What is below the diagonal of symmetric
- * matrices is never read: its `mirror` stands for both. */
+/* Rows of numbers that differ between designs, and their count; the others are stored once. Entries below the diagonal of symmetric
+ * matrices are never read: `mirror` gives the equal entry. */
 static int64_t vary(const Task *t, lanes *to, int64_t *varying)
 {
     int64_t count = 0;
@@ -758,7 +758,7 @@ static void outlines(const Task *t, Law *law, const lanes *number, const int64_t
 
 int64_t flexstage_width(void) { return WIDTH; }
 
-/* Every design of the task; 0, or 1 where that is too much. */
+/* Every design of the task; returns 0, or 1 if it is too large. */
 int64_t flexstage_modes(const Task *t)
 {
     const int64_t own = OWN * t->bodies, edge = 36 * t->edges, block = 6 * t->bodies * t->m;

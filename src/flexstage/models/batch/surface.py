@@ -1,7 +1,7 @@
 """Polynomial fit of the numbers of designs over specified ranges: fitted once, checked, then evaluated for any number of designs.
 
 Terms are products of Chebyshev polynomials of the variables that a number depends on. Two lines per variable determine the degrees; terms
-with a high total degree are dropped as far as the validation designs permit. Coefficients follow from least squares at random points.
+with a high total degree are dropped if the validation designs permit. Coefficients follow from least squares at random points.
 
 Functions that are not smooth are not fitted, e.g. outlines whose overlaps change over the ranges.
 """

@@ -36,7 +36,7 @@ class _Group:
 
 
 @dataclass(frozen=True, eq=False)
-class _Given:
+class _Solution:
     """Coordinates of a block: `free` ones are idle; the `bound` ones follow from these and from the coordinates of `others`, in order."""
 
     free: Array
@@ -47,7 +47,7 @@ class _Given:
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class ConstraintSolution:
     """Motions that satisfy the constraints.
 
     `last` is the elimination of platform and strokes, `idle` (k rows, N) one free internal mode per unconstrained coordinate.
@@ -60,7 +60,7 @@ class Solved:
     redundant: tuple[tuple[int, ...], ...]
 
 
-def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> Solved:
+def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> ConstraintSolution:
     """Eliminate constraints (1, N) over the twists of `bodies` (the platform's first) and the strokes, comparable by `scale` (N,).
 
     >>> rows = [Sparse(np.array([0, 6]), np.array([[1.0, -1.0]]), 12), Sparse(np.array([6]), np.array([[1.0]]), 12)]
@@ -74,7 +74,7 @@ def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes:
     for number, group in groups.items():
         for block in group.blocks:
             near[block].add(number)
-    solutions: dict[int, _Given] = {}
+    solutions: dict[int, _Solution] = {}
     stresses: list[tuple[Array, Array]] = []
     depth = dict.fromkeys(near, 0)
     heap = [(_degree(groups, near[block]), block) for block in range(1, bodies)]
@@ -151,19 +151,19 @@ def _join(groups: Sequence[_Group], first: int | None, starts: Array) -> _Group:
     return _Group(tuple(blocks.tolist()), rows, made, shares)
 
 
-def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Array, Array]]) -> tuple[_Given, _Group | None]:
+def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Array, Array]]) -> tuple[_Solution, _Group | None]:
     """Body coordinates from its rows, and the rows that do not contain it; zero rows are self-stress states."""
     width = int(starts[block + 1] - starts[block])
     others = group.blocks[1:]
     if not len(group.rows):
         every = np.arange(width)
-        return _Given(every, every[:0], np.zeros((0, width)), (), np.zeros((0, 0))), None
+        return _Solution(every, every[:0], np.zeros((0, width)), (), np.zeros((0, 0))), None
     turn, triangle, order = scipy.linalg.qr(group.rows[:, :width], pivoting=True)
     rank = int(np.sum(np.abs(np.diag(triangle)) > _RANK))
     remainder, shares = turn.T @ group.rows[:, width:], turn.T @ group.shares
     solved = -np.linalg.solve(triangle[:rank, :rank], np.concatenate([triangle[:rank, rank:], remainder[:rank]], axis=1))
     free = width - rank
-    solution = _Given(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
+    solution = _Solution(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
     vanished = np.max(np.abs(remainder[rank:]), axis=1, initial=0.0) < _RANK
     stresses += [(group.made, share) for share in shares[rank:][vanished]]
     kept = remainder[rank:][~vanished]
@@ -171,8 +171,8 @@ def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Ar
 
 
 def _solved(
-    groups: list[_Group], solutions: dict[int, _Given], stresses: list[tuple[Array, Array]], *, scale: Array, starts: Array, bodies: int
-) -> Solved:
+    groups: list[_Group], solutions: dict[int, _Solution], stresses: list[tuple[Array, Array]], *, scale: Array, starts: Array, bodies: int
+) -> ConstraintSolution:
     kept = [0, *range(bodies, len(starts) - 1)]
     columns = np.concatenate([np.arange(starts[block], starts[block + 1]) for block in kept])
     whole = _join(groups, None, starts)
@@ -184,10 +184,10 @@ def _solved(
         sizes = np.where(sizes > 0.0, sizes, 1.0)
         stresses += [(whole.made, state @ whole.shares) for state in null_space((rows / sizes[:, None]).T).T / sizes]
     last = eliminate(rows / scale[columns], scale[columns], keep=tuple(range(6)))
-    return Solved(last, tuple(_idle_motions(solutions, starts, scale)), _named(stresses))
+    return ConstraintSolution(last, tuple(_idle_motions(solutions, starts, scale)), _named(stresses))
 
 
-def _idle_motions(solutions: dict[int, _Given], starts: Array, scale: Array) -> list[Sparse]:
+def _idle_motions(solutions: dict[int, _Solution], starts: Array, scale: Array) -> list[Sparse]:
     """A motion for every free coordinate, with all coordinates that follow from it."""
     names = list(solutions)
     place = {block: number for number, block in enumerate(names)}
@@ -219,7 +219,7 @@ def _idle_motions(solutions: dict[int, _Given], starts: Array, scale: Array) -> 
     return motions
 
 
-def _following(solution: _Given, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
+def _following(solution: _Solution, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
     """Motion of a block by the blocks that have moved, its own free coordinates at zero."""
     result = np.zeros((int(starts[block + 1] - starts[block]), count))
     column = 0

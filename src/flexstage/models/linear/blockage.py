@@ -51,14 +51,14 @@ def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: fr
     if single:
         meant = [row for row in single if names[row] in intended]
         return Blockage(_unique_names(against, names), _unique_names(meant or single, names))
-    left, freed, held = list(range(len(names))), [], []
+    left, freed, fixed = list(range(len(names))), [], []
     while against and not _moves(constraints[left], stroke):
         rows = [left[row] for row in against]
-        held += rows
+        fixed += rows
         freed.append(next((row for row in rows if names[row] in intended), rows[0]))
         left.remove(freed[-1])
         against = _against(constraints[left], stroke)
-    return Blockage(_unique_names(held, names), _unique_names(freed, names), together=True)
+    return Blockage(_unique_names(fixed, names), _unique_names(freed, names), together=True)
 
 
 def _against(constraints: Array, stroke: int) -> list[int]:

@@ -2,8 +2,12 @@
 
 Inputs: strokes and forces of the actuators; wrenches on the platform and the named points.
 
-Outputs: twists of the platform, the points and all other bodies; gauge readings; stress resultants of every link, at its centre in its
-frame; wrenches at the ports of superelements, in their frames.
+Outputs:
+
+- twists of the platform, the points and all other bodies;
+- gauge readings;
+- stress resultants of every link, at its centre in its frame;
+- wrenches at the ports of superelements, in their frames.
 """
 
 from __future__ import annotations

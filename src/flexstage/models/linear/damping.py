@@ -64,8 +64,8 @@ def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
 
     - Modal: as specified.
     - Rayleigh: zeta_r = (alpha/omega_r + beta omega_r)/2, exact.
-    - Structural: zeta_r = sum_p eta_p phi^T K_p phi / (2 omega_r^2), the *equivalent* ratio by modal strain energy (Ungar and Kerwin 1962),
-      right at resonance for small loss factors.
+    - Structural: zeta_r = sum_p eta_p phi^T K_p phi / (2 omega_r^2), the *equivalent* ratio by modal strain energy (Ungar and Kerwin 1962).
+      It is right at resonance for small loss factors.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.mechanism import StructuralDamping

@@ -48,11 +48,11 @@ def eigen(model: LinearModel) -> Eigen:
     """
     if model.stiffness_matrix.ndim > 2 or model.inertia_matrix.ndim > 2 or len(model.coordinates) > ALL_MODES:
         return _solve(model)
-    return _kept(model)
+    return _cached(model)
 
 
 @SESSION.keep(2)
-def _kept(model: LinearModel) -> Eigen:
+def _cached(model: LinearModel) -> Eigen:
     """Result of one design, cached for further calls with the same model: modes, response frequencies, response."""
     return _solve(model)
 

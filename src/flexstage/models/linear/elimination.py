@@ -2,8 +2,8 @@
 
 A z = 0 with rank r: r dependent coordinates follow from the independent ones, z_d = -A_d^-1 A_i z_i.
 
-Pivots are chosen on real parts, so that the result is complex-analytic: by `eliminate` on the first design of a batch, by `eliminate_each`
-on every design.
+Pivots are chosen on real parts, so that the result is complex-analytic. `eliminate` uses the first design of a batch, `eliminate_each`
+every design.
 """
 
 from __future__ import annotations

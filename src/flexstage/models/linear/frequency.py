@@ -90,8 +90,7 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
 
     - Modal and Rayleigh damping: exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f. The residual
       R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact.
-    - Structural damping: direct solutions of K* - omega^2 M, where a stroke u exerts K_p (1 + j eta_p) u and a link force has the same
-      loss.
+    - Structural damping: direct solutions of K* - omega^2 M. A stroke u exerts K_p (1 + j eta_p) u; a link force has the same loss.
     - Dampers of parts (`LinearModel.viscous`) couple modes: direct solutions under any law.
 
     A frequency of zero gives the static gain.

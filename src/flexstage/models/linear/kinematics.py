@@ -31,7 +31,7 @@ class Idle:
 
 @dataclass(frozen=True)
 class Redundant:
-    """Redundant constraint: locked freedoms (`B1/left.y`), one of which is superfluous."""
+    """Redundant constraint: a set of locked freedoms (`B1/left.y`) with one superfluous member."""
 
     TABLE: ClassVar[Layout] = Layout("Redundant constraints", "constraints")
 
@@ -42,14 +42,11 @@ class Kinematics(Result):
     """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
 
     The platform twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
-
-    - `actuation`: da/dxi (..., n, f); `sensing`: ds/dx (..., g, 6); `motion`: V (..., 6, f).
-    - `bodies`: motion of all body coordinates per xi (..., N, f).
-    - `strains`: deformation of each link per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
-    - `free`: the free freedoms of each link.
-    - `length` (...): scale that makes rotations comparable with translations.
-    - `blocked`: blockage of each immobile actuator.
-    - `gauge_units`: units of the readings (absent: m); `sums`: weights of the gauges in each sum of gauges.
+    `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f). `bodies` is the motion of all body coordinates
+    per xi (..., N, f). `strains` is the deformation of each link per xi (..., 6, f) in its frame (only intended freedoms and strokes
+    non-zero). `free` has the free freedoms of each link. `length` (...) is the scale that makes rotations comparable with translations.
+    `blocked` has the blockage of each immobile actuator. `gauge_units` are the units of the readings (absent: m), `sums` the weights of the
+    gauges in each sum of gauges.
 
     `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion. `thrust` (..., f, t) is the generalised force per
     unit of their input (`thrust_inputs`, N or A) on xi, V^T W.
@@ -209,11 +206,11 @@ class Kinematics(Result):
         if not self.actuated:
             strokes = "1 stroke does" if len(self.actuators) == 1 else f"{len(self.actuators)} strokes do"
             motions = f"{self.mobility} ideal motion{'' if self.mobility == 1 else 's'}"
-            held = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
+            immobile_note = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
             mend = [finding.advice for finding in self.blockages] or [self._advice]
             raise refuse(
                 "mapping",
-                f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){held}",
+                f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){immobile_note}",
                 f"{'; '.join(mend)}; stiffness, modes and response are available nevertheless",
             )
 

@@ -3,8 +3,8 @@
 K = G^T k G with G the strains of all links. In a long chain rounding in K hides that rigid motions of a part have no energy. Solutions are
 therefore refined with the forces of the strains.
 
-If that does not converge, strains and motions are joint unknowns, for which rigid motions are exact (the augmented system of weighted least
-squares; Bjorck, BIT 7, 1, 1967).
+If that does not converge, strains and motions are joint unknowns, for which rigid motions are exact. This is the augmented system of
+weighted least squares (Bjorck, BIT 7, 1, 1967).
 """
 
 from __future__ import annotations

@@ -59,8 +59,8 @@ class LinearModel(CheckedFields):
 
     Batch axes lead, and only where something varies: an array without them is valid for every design.
 
-    `viscous` are the dampers (..., d, d) [N s/m] of parts, by stiffness contribution. They resist the rate of its deformation, G q less the
-    imposed one, in its first d rows, in addition to the damping law of the model. Link forces exclude dampers.
+    `viscous` are the dampers (..., d, d) [N s/m] of parts, by stiffness contribution. They resist the rate of its deformation (G q less the
+    imposed one) in its first d rows. The damping law of the model is added. Link forces exclude dampers.
 
     `idle` names coordinates without stiffness. They are removed with their zero modes: the kept ones are M-orthogonal to them, so that
     frequencies and shapes do not depend on their choice.
@@ -68,8 +68,8 @@ class LinearModel(CheckedFields):
     `idle_output` (..., p, k) are the outputs of the k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground
     acceleration (both absent: none).
 
-    The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`), `solve` and `momenta` use no dense
-    matrix, and K and M are assembled on request.
+    The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense
+    matrix; K and M are assembled on request.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.lumped(stage)")
@@ -196,16 +196,16 @@ class LinearModel(CheckedFields):
         return tuple(channel.name for channel in self.inputs if "." not in channel.name)
 
 
-def _places(names: tuple[str, ...], known: Mapping[str, int], kind: str) -> list[int]:
-    require(dict.fromkeys(_unknown(name, known, kind) for name in names if name not in known))
-    return [known[name] for name in names]
+def _places(names: tuple[str, ...], by_name: Mapping[str, int], kind: str) -> list[int]:
+    require(dict.fromkeys(_unknown(name, by_name, kind) for name in names if name not in by_name))
+    return [by_name[name] for name in names]
 
 
-def _unknown(name: str, known: Iterable[str], kind: str) -> Finding:
+def _unknown(name: str, names: Iterable[str], kind: str) -> Finding:
     """The error for a name without a channel or, if all of its components are unknown, for its point."""
-    owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in known} - {""}
+    owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in names} - {""}
     if not owner or owner in owners:
-        return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, known))
+        return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, names))
     return Finding(owner, "the model has no point of this name", suggest_nearest(owner, owners))
 
 

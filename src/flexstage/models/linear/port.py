@@ -117,7 +117,7 @@ def _expand_groups(names: str | Iterable[str], known: tuple[str, ...], kind: str
     return result
 
 
-def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[str, int]) -> tuple[Channel, Array, Array, Array]:
+def _column(model: LinearModel, name: str, by_name: dict[str, int], sources: dict[str, int]) -> tuple[Channel, Array, Array, Array]:
     """Channel, force, inertial force and feed-through of one input, matrices of one column."""
     if name in sources:
         number = [sources[name]]
@@ -130,7 +130,7 @@ def _column(model: LinearModel, name: str, known: dict[str, int], sources: dict[
         inertial = model.base_inertia[..., [axis]]
         return Channel(name, TWIST_UNITS[axis]), np.zeros_like(inertial), inertial, model.rigid_output[..., [axis]]
     axis = FORCES.index(component)
-    row = model.output[..., [known[f"{owner}.{COMPONENTS[axis]}"]], :]
+    row = model.output[..., [by_name[f"{owner}.{COMPONENTS[axis]}"]], :]
     force = np.swapaxes(row, -1, -2)
     return Channel(name, WRENCH_UNITS[axis]), force, np.zeros_like(force), np.zeros((len(model.outputs), 1))
 

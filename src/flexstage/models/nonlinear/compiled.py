@@ -16,7 +16,7 @@ from flexstage.base.processes.native import kernel_library
 from flexstage.base.session import SESSION
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import gauss
-from flexstage.models.nonlinear.graph import Rest
+from flexstage.models.nonlinear.graph import OtherTerms
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions
 
@@ -53,7 +53,7 @@ class _Task(ctypes.Structure):
 
 
 @dataclass(frozen=True, eq=False)
-class Ended:
+class CompiledResult:
     """Poses of b cases after their iterations, with `status`, `count` of iterations, last step `moved` and last residual `lack` (b,)."""
 
     pose: Pose
@@ -101,8 +101,8 @@ def tables(model: Nonlinear) -> Tables | None:
     return Tables(tuple(sizes for sizes, _ in known), tuple(arrays for _, arrays in known))
 
 
-def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, rest: Rest | None) -> Ended:
-    """Iterate every case in C; with a `rest`, valid at these poses, at most once. Requires `kernel` and `tables`.
+def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, other: OtherTerms | None) -> CompiledResult:
+    """Iterate every case in C; with a `other`, valid at these poses, at most once. Requires `kernel` and `tables`.
 
     Equal to `newton.iterate` up to rounding; to the bit independent of the other cases of a call.
     """
@@ -113,7 +113,7 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: Solve
         _copy(start.position), _copy(start.turn), tuple(map(_copy, start.strain)), tuple(map(_copy, start.wrench)), _copy(start.held)
     )
     results = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
-    terms = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
+    terms = {} if other is None else {"residual": _copy(other.residual), "stiffness": _copy(other.stiffness)}
     held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | results | terms
     groups, settings = _groups(model, pose), (model.size, model.reach, options.step, options.gap, options.limit)
     sizes = (cases, len(model.bodies), pose.held.shape[1], len(groups), len(held["body"]), options.iterations, int(np.any(loads.gravity)))
@@ -122,7 +122,7 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: Solve
     task.group = ctypes.addressof(groups)
     if library.flexstage_equilibria(ctypes.byref(task)):
         results["status"][:], results["moved"][:] = 2, np.nan
-    return Ended(pose, **results)
+    return CompiledResult(pose, **results)
 
 
 def _groups(model: Nonlinear, pose: Pose) -> Any:
@@ -136,7 +136,7 @@ def _groups(model: Nonlinear, pose: Pose) -> Any:
 
 def _loads(model: Nonlinear, loads: Loads) -> dict[str, Array]:
     body = model.places.body.astype(np.int64)
-    return {"gravity": _copy(loads.gravity), "force": _copy(model.dead(loads)), "body": body, "arm": _copy(model.places.arm)}
+    return {"gravity": _copy(loads.gravity), "force": _copy(model.constant_wrenches(loads)), "body": body, "arm": _copy(model.places.arm)}
 
 
 def _fill(target: Any, numbers: Mapping[str, float], arrays: Mapping[str, Array]) -> None:

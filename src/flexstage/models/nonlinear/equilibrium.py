@@ -13,9 +13,18 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
-from flexstage.models.nonlinear.elements.hold import Hold
-from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, Task, equilibrate, equilibrate_designs, merge, search
-from flexstage.models.nonlinear.paths.arc import rescue
+from flexstage.models.nonlinear.elements.fixed_coordinates import FixedCoordinates
+from flexstage.models.nonlinear.newton import (
+    RESULT_FIELDS,
+    USUAL,
+    EquilibriumSolution,
+    Task,
+    equilibrate,
+    equilibrate_designs,
+    merge,
+    search,
+)
+from flexstage.models.nonlinear.paths.arc import complete_paths
 from flexstage.models.nonlinear.paths.follow import continued
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
@@ -39,7 +48,7 @@ class State:
     WRITTEN: ClassVar[tuple[str, str]] = ("an equilibrium state", "fs.equilibrium(fs.nonlinear(stage))")
     model: Nonlinear
     loads: Loads
-    hold: Hold
+    hold: FixedCoordinates
     pose: Pose
     shape: tuple[int, ...]
     status: Array
@@ -50,14 +59,14 @@ class State:
 
     @property
     def converged(self) -> Array:
-        """Which cases (...) converged."""
+        """Convergence of each case (...)."""
         return self.status == Status.CONVERGED
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why each case has no result, in the order of `status.ravel()`; empty if it has one."""
+        """Failure reason of each case, in the order of `status.ravel()`; empty if it converged."""
         return tuple(
-            why_without(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True)
+            failure_reason(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True)
         )
 
     @property
@@ -93,7 +102,7 @@ class State:
     def case(self, number: int) -> State:
         """Select one case by its number."""
         cases = np.array([number])
-        status, iterations, residual, reached = (getattr(self, name).ravel()[number] for name in TOLD)
+        status, iterations, residual, reached = (getattr(self, name).ravel()[number] for name in RESULT_FIELDS)
         loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
         return State(self.model, loads, hold, pose, (), status, iterations, residual, reached, self.held)
 
@@ -106,7 +115,7 @@ class State:
         return known.reshape(*self.shape, values.shape[-1])
 
 
-def why_without(status: int, share: float) -> str:
+def failure_reason(status: int, share: float) -> str:
     """Describe why a case has no result, with the load fraction of its path; empty if it has one."""
     if status == Status.CONVERGED:
         return ""
@@ -115,17 +124,17 @@ def why_without(status: int, share: float) -> str:
     if status == Status.NOT_FOLLOWED:
         return f"equilibrium was followed to {share:.3g} of the path from the unloaded stage: a state beyond is not its continuation"
     what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
-    far = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the path to it"
-    return f"{what} under the whole load; {far}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
+    progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the path to it"
+    return f"{what} under the whole load; {progress}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
 def require_equilibrium(solution: State) -> None:
     """Refuse a case without an equilibrium that continues the unloaded stage, with the load of the critical point or path end."""
     if not bool(solution.converged):
         status, share = int(solution.status), float(solution.reached)
-        far = f": equilibrium was followed to {share:.3g} of them" if share else ""
-        known = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
-        what = why_without(status, share) if known else f"under its weight and loads no equilibrium was found{far}"
+        progress = f": equilibrium was followed to {share:.3g} of them" if share else ""
+        has_reason = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
+        what = failure_reason(status, share) if has_reason else f"under its weight and loads no equilibrium was found{progress}"
         raise refuse("stage", what, LESS)
 
 
@@ -160,8 +169,8 @@ def equilibrium(
     Every case starts from the nominal position, or from `start`, under its whole load. If that fails, the load grows in steps, then by arc
     length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
-    From the nominal position, a state is also refused if it is unstable or not the continuation of the unloaded stage, as all loads and
-    fixed coordinates grow together. `options` with `past` limits or without `arcs` permit such states.
+    From the nominal position, an unstable state is also NaN, as is one that does not continue the unloaded stage as all loads and fixed
+    coordinates grow together. `options` with `past` limits or without `arcs` permit such states.
 
     Raises `DesignError` for names that the stage does not have.
 
@@ -171,9 +180,9 @@ def equilibrium(
     >>> (result.displacement()[:, 0] * 1e6).round(1).tolist()
     [5.2, 10.3]
     """
-    request = _asked(model, loads or {}, hold or {}, weight, stated)
+    request = _request(model, loads or {}, hold or {}, weight, stated)
     first = _first(model, start, request.hold, len(request.loads.inputs))
-    solution = rescue(model, request.loads, request.hold, equilibrate(model, first, request.loads, request.hold, options), options)
+    solution = complete_paths(model, request.loads, request.hold, equilibrate(model, first, request.loads, request.hold, options), options)
     if start is None:
         solution = _continued(model, request, solution, options)
     return state(model, request.loads, request.hold, solution, (request.shape, request.held))
@@ -204,18 +213,18 @@ def equilibria(
     """
     _require_alike(models)
     held = [hold or {}] * len(models) if isinstance(hold, Mapping | None) else hold
-    requests = [_asked(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
+    requests = [_request(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
     starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, requests, strict=True)]
     tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, requests, strict=True)]
     solutions = equilibrate_designs(tasks, options)
-    rescued = (rescue(each.model, each.loads, each.hold, one, options) for each, one in zip(tasks, solutions, strict=True))
+    rescued = (complete_paths(each.model, each.loads, each.hold, one, options) for each, one in zip(tasks, solutions, strict=True))
     return [
         state(model, each.loads, each.hold, _continued(model, each, one, options), (each.shape, each.held))
         for model, each, one in zip(models, requests, rescued, strict=True)
     ]
 
 
-def _continued(model: Nonlinear, request: _Asked, solution: Found, options: SolverOptions) -> Found:
+def _continued(model: Nonlinear, request: _Request, solution: EquilibriumSolution, options: SolverOptions) -> EquilibriumSolution:
     """The result if it continues the unloaded stage; else the continuation, or the reason why there is none."""
     known = np.flatnonzero(solution.status == Status.CONVERGED)
     if not options.arcs or options.past or not known.size:
@@ -272,7 +281,7 @@ def corrected(
     One step would suffice if the stiffness were the derivative of the residual to more than the 1e-6 of its rule. Loads and fixed
     coordinates are those of `start`. Cases without a state in `start` have none in the result.
     """
-    request = _asked(model, loads or {}, hold or {}, weight, stated)
+    request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))
     solution = search(model, pose, request.loads, request.hold, replace(USUAL, iterations=2))
     status = np.where(solution.status == Status.SINGULAR, solution.status, np.broadcast_to(start.status.ravel(), solution.status.shape))
@@ -280,16 +289,16 @@ def corrected(
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
+class _Request:
     """Loads and fixed coordinates of b cases, their shape, and the names of the coordinates."""
 
     loads: Loads
-    hold: Hold
+    hold: FixedCoordinates
     shape: tuple[int, ...]
     held: tuple[str, ...]
 
 
-def _asked(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, Number], weight: Number, stated: Number) -> _Asked:
+def _request(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, Number], weight: Number, stated: Number) -> _Request:
     """Loads and fixed coordinates by name; raises for names that the stage does not have."""
     require([*_unknown_inputs(model, loads), *_unknown_coordinates(model, held)])
     arrays = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (*loads.values(), *held.values(), weight, stated)))
@@ -300,18 +309,20 @@ def _asked(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, Num
     for name, values in zip(loads, flat, strict=False):
         inputs[:, names.index(name)] = values
     whole = Loads(inputs, flat[-2][:, None] * model.gravity, flat[-1])
-    return _Asked(whole, _hold(model, held, flat[len(loads) : len(loads) + len(held)], cases), shape, tuple(held))
+    return _Request(whole, _hold(model, held, flat[len(loads) : len(loads) + len(held)], cases), shape, tuple(held))
 
 
-def state(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:
+def state(
+    model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, labels: tuple[tuple[int, ...], tuple[str, ...]]
+) -> State:
     """Build the state of a solution, with its cases in a shape and its fixed coordinates by name."""
     shape, held = labels
-    status, iterations, residual, reached = (getattr(solution, name).reshape(shape) for name in TOLD)
+    status, iterations, residual, reached = (getattr(solution, name).reshape(shape) for name in RESULT_FIELDS)
     return State(model, loads, hold, solution.pose, shape, status, iterations, residual, reached, held)
 
 
-def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pose:
-    pose = model.drawn(cases) if start is None else start.pose
+def _first(model: Nonlinear, start: State | None, hold: FixedCoordinates, cases: int) -> Pose:
+    pose = model.nominal_pose(cases) if start is None else start.pose
     if len(pose.position) != cases:
         pose = pose.of(np.zeros(cases, dtype=int))
     reactions = np.zeros((cases, len(model.hinges.locked) + len(hold.body)))
@@ -320,13 +331,13 @@ def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pos
     return Pose(pose.position, pose.turn, pose.strain, pose.wrench, reactions)
 
 
-def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cases: int) -> Hold:
+def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cases: int) -> FixedCoordinates:
     places = [name.rpartition(".") for name in held]
     coordinates = [place(model, owner) for owner, _, _ in places]
     body = np.array([number for number, _ in coordinates], dtype=int)
     arm = np.array([arm for _, arm in coordinates]).reshape(-1, 3)
     component = np.array([COMPONENTS.index(name) for _, _, name in places], dtype=int)
-    return Hold(
+    return FixedCoordinates(
         body,
         arm * model.growth[body, None],
         component,

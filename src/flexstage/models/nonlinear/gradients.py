@@ -73,7 +73,7 @@ def gradients(
 ) -> Array:
     """Compute gradients (a, ...) of results by the numbers at a addresses, per SI unit, for constant loads and fixed coordinates.
 
-    By the implicit function theorem: dq/dp = - K^-1 dF/dp, K the tangent stiffness including the inner unknowns of flexures, dF/dp the
+    By the implicit function theorem: dq/dp = - K^-1 dF/dp. K is the tangent stiffness, including the inner unknowns of flexures, dF/dp the
     derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with four
     points.
 
@@ -99,5 +99,5 @@ def _slope(mechanism: Mechanism, name: str, size: float, evaluate_near: Callable
     if value is None or not isinstance(locate(mechanism, name).node, NumberNode):
         raise refuse(name, "not a single number of the description", "Specify the number, or use another one")
     step = _SHARE * (abs(float(value)) or size)
-    moved = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
-    return np.sum([weight * evaluate_near(model) for model, weight in zip(moved, _STENCIL.values(), strict=True)], axis=0) / step
+    models = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
+    return np.sum([weight * evaluate_near(model) for model, weight in zip(models, _STENCIL.values(), strict=True)], axis=0) / step

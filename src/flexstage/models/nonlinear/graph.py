@@ -9,11 +9,11 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.flexure.law import FlexureLaw
-from flexstage.models.nonlinear.elements.condense import Answer, condense, settle
+from flexstage.models.nonlinear.elements.condense import FlexureResponse, condense, relax_fields
 from flexstage.models.nonlinear.elements.corotated import stiffen_ports
 from flexstage.models.nonlinear.elements.element import Shape, Tangent, shape, tangent
+from flexstage.models.nonlinear.elements.fixed_coordinates import FixedCoordinates, gradients
 from flexstage.models.nonlinear.elements.hinge import Ends, Hinges, imposed, stiffen
-from flexstage.models.nonlinear.elements.hold import Hold, gradients
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose
 from flexstage.models.nonlinear.summed import Dense, Sum, empty_sum, solved
@@ -22,7 +22,7 @@ from flexstage.spatial.rotation import cross, exponential, logarithm
 
 
 @dataclass(frozen=True, eq=False)
-class Bent:
+class FlexureState:
     """A group of flexures at a pose: frames and arms (l, b, ...) in space, configurations, and responses of their own systems.
 
     `lever` is h, from the first body's reference to the end; `arm` a_j, from the second body's; `onset` a_i.
@@ -41,12 +41,12 @@ class Bent:
     lies: Shape
     tangent: Tangent
     gap: Array
-    answer: Answer
+    answer: FlexureResponse
     wrench: Array
 
 
 @dataclass(frozen=True, eq=False)
-class Rest:
+class OtherTerms:
     """Terms of all elements but flexures: `residual` (b, n) and `stiffness` (b, n, n) of links about centres and fixed coordinates."""
 
     residual: Array
@@ -54,7 +54,7 @@ class Rest:
 
 
 @dataclass(frozen=True, eq=False)
-class Tally:
+class ResidualSum:
     """A residual (b, n) and a stiffness in assembly, including the ground rows."""
 
     residual: Array
@@ -67,7 +67,7 @@ class System:
 
     residual: Array
     matrix: Array | tuple[Any, ...]
-    bent: tuple[Bent, ...]
+    bent: tuple[FlexureState, ...]
 
     @property
     def stiffness(self) -> Array:
@@ -79,11 +79,11 @@ class System:
         return solved(self.matrix, right)
 
 
-def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
+def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates) -> System:
     """Assemble residual and stiffness of the stage, for flexures with updated forces."""
     residual, kept = _nothing(model, pose, hold)
-    tally = Tally(residual, empty_sum(*residual.shape))
-    bent = tuple(bend(group, pose, number, loads) for number, group in enumerate(model.flexures))
+    tally = ResidualSum(residual, empty_sum(*residual.shape))
+    bent = tuple(flexure_state(group, pose, number, loads) for number, group in enumerate(model.flexures))
     for group, terms in zip(model.flexures, bent, strict=True):
         force, own = _flexure_terms(group.law, terms)
         _scatter(tally, group, force, own)
@@ -92,30 +92,30 @@ def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
     return System(residual[:, kept], tally.stiffness.total(kept), bent)
 
 
-def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
-    """Assemble the terms of links about centres, superelements and fixed coordinates; `None` if there are none."""
+def other_terms(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates) -> OtherTerms | None:
+    """Assemble the terms of links about centres, superelements and fixed coordinates; `None` if the stage has none."""
     if not model.hinges.names and not model.elements and not len(hold.body):
         return None
     residual, kept = _nothing(model, pose, hold)
     stiffness = Dense(*residual.shape)
-    _add_rest(model, pose, loads, hold, Tally(residual, stiffness))
-    return Rest(residual[:, kept], stiffness.total(kept))
+    _add_rest(model, pose, loads, hold, ResidualSum(residual, stiffness))
+    return OtherTerms(residual[:, kept], stiffness.total(kept))
 
 
-def _nothing(model: Nonlinear, pose: Pose, hold: Hold) -> tuple[Array, Array]:
+def _nothing(model: Nonlinear, pose: Pose, hold: FixedCoordinates) -> tuple[Array, Array]:
     """A zero residual, including the ground rows, and the rows to keep at the end."""
     cases, size, count = len(pose.position), model.freedoms + 6, len(model.hinges.locked) + len(hold.body)
     kept = np.r_[: model.freedoms, size : size + count]
     return np.zeros((cases, size + count)), kept
 
 
-def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, tally: Tally) -> None:
+def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, tally: ResidualSum) -> None:
     _add_hinges(model, pose, loads, tally)
     _add_elements(model, pose, loads, tally)
     _add_holds(hold, pose, tally, model.freedoms + 6 + len(model.hinges.locked))
 
 
-def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:
+def flexure_state(group: Flexures, pose: Pose, number: int, loads: Loads) -> FlexureState:
     """Evaluate a group of flexures between its bodies."""
     law = group.law
     turn, other = _gather(pose.turn, group.first), _gather(pose.turn, group.second)
@@ -131,10 +131,10 @@ def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:
     gap = np.concatenate([lies.end - _rotate(_transpose(frame), across) / length, twisted], axis=-1)
     answer = condense(slope, gap)
     wrench = pose.wrench[number] + answer.still[..., -6:]
-    return Bent(frame, onset, across + onset, arm, weight, lies, slope, gap, answer, wrench)
+    return FlexureState(frame, onset, across + onset, arm, weight, lies, slope, gap, answer, wrench)
 
 
-def end_motion(law: FlexureLaw, bent: Bent) -> Array:
+def end_motion(law: FlexureLaw, bent: FlexureState) -> Array:
     """Compute T (l, b, 6, 12): relative end motion in the start frame by the motions of both bodies (docs/nonlinear.md, 17)."""
     back = _transpose(bent.frame)
     none, eye = np.zeros_like(back), np.broadcast_to(np.eye(3), back.shape)
@@ -143,7 +143,7 @@ def end_motion(law: FlexureLaw, bent: Bent) -> Array:
     return np.concatenate([place / law.length[:, None, None, None], turn], axis=-2)
 
 
-def weight_motion(bent: Bent) -> Array:
+def weight_motion(bent: FlexureState) -> Array:
     """Compute the change of the weight in the start frame (l, b, 3, 12) by the rotation of the first body."""
     assert bent.weight is not None  # noqa: S101  (asked for only where there is weight)
     back = _transpose(bent.frame)
@@ -152,7 +152,7 @@ def weight_motion(bent: Bent) -> Array:
     return result
 
 
-def geometric(law: FlexureLaw, bent: Bent, force: Array, moment: Array) -> Array:
+def geometric(law: FlexureLaw, bent: FlexureState, force: Array, moment: Array) -> Array:
     """Compute the stiffness (l, b, 12, 12) due to rotation of the arms under the end forces (docs/nonlinear.md, 18)."""
     scale = (law.rigidity / law.length)[:, None, None]
     force_hat = cross_matrix(_rotate(bent.frame, force) * scale / law.length[:, None, None])
@@ -172,7 +172,7 @@ def geometric(law: FlexureLaw, bent: Bent, force: Array, moment: Array) -> Array
     return result
 
 
-def _weight_of(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
+def _weight_of(law: FlexureLaw, bent: FlexureState) -> tuple[Array, Array]:
     """The weight (l, b, 3) [N] in space, and the arm of its centre from the first body's reference [m]."""
     assert bent.weight is not None  # noqa: S101
     rule = bent.lies.rule
@@ -181,7 +181,7 @@ def _weight_of(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
     return weight, bent.onset + law.length[:, None, None] * _rotate(bent.frame, mean)
 
 
-def _flexure_terms(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
+def _flexure_terms(law: FlexureLaw, bent: FlexureState) -> tuple[Array, Array]:
     """Residual (l, b, 12) and stiffness (l, b, 12, 12) of flexures on their two bodies."""
     count = law.form.shape[-1]
     motion = end_motion(law, bent)
@@ -197,7 +197,7 @@ def _flexure_terms(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
     return residual, result + geometric(law, bent, wrench[..., :3], wrench[..., 3:])
 
 
-def _add_weight(law: FlexureLaw, bent: Bent, motion: Array, residual: Array, stiffness: Array) -> tuple[Array, Array]:
+def _add_weight(law: FlexureLaw, bent: FlexureState, motion: Array, residual: Array, stiffness: Array) -> tuple[Array, Array]:
     """Add the weight of the flexures (docs/nonlinear.md, 16)."""
     count, moved, element = law.form.shape[-1], bent.answer.moved, bent.tangent
     assert element.hung is not None  # noqa: S101
@@ -218,7 +218,7 @@ def _add_weight(law: FlexureLaw, bent: Bent, motion: Array, residual: Array, sti
     return residual, stiffness
 
 
-def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
+def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -> None:
     hinges, size = model.hinges, model.freedoms + 6
     if not hinges.names:
         return
@@ -238,7 +238,7 @@ def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> Non
             tally.stiffness.add(columns, at, rows[link, :, freedom, part, None])
 
 
-def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
+def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -> None:
     """Add superelements, including their weight (docs/nonlinear.md, 31)."""
     for element in model.elements:
         force, own = stiffen_ports(element, pose.position[:, element.bodies], pose.turn[:, element.bodies], loads.gravity)
@@ -255,9 +255,9 @@ def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
     return Ends(*(_gather(each, which) for which in (first, second) for each in (pose.position, pose.turn)))
 
 
-def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
+def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -> None:
     """Add constant-direction forces at points of bodies, and constant couples (docs/nonlinear.md, 19)."""
-    dead = model.dead(loads)
+    dead = model.constant_wrenches(loads)
     arms = _rotate(pose.turn[:, model.places.body], model.places.arm)
     moment = cross(arms, dead[..., :3]) + dead[..., 3:]
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
@@ -272,7 +272,7 @@ def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
     result = []
     for inputs in (0.0 * rate.inputs, rate.inputs):
-        tally = Tally(np.zeros((cases, size)), empty_sum(cases, size))
+        tally = ResidualSum(np.zeros((cases, size)), empty_sum(cases, size))
         loads = Loads(inputs, np.zeros((cases, 3)), np.zeros(cases))
         _add_hinges(model, pose, loads, tally)
         _add_loads(model, pose, loads, tally)
@@ -281,7 +281,7 @@ def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
     return (result[0] - result[1])[:, kept]
 
 
-def _add_holds(hold: Hold, pose: Pose, tally: Tally, start: int) -> None:
+def _add_holds(hold: FixedCoordinates, pose: Pose, tally: ResidualSum, start: int) -> None:
     for place in range(len(hold.body)):
         first = 6 * hold.body[place]
         columns, row = slice(first, first + 6), start + place
@@ -294,7 +294,7 @@ def _add_holds(hold: Hold, pose: Pose, tally: Tally, start: int) -> None:
         tally.stiffness.add(columns, columns, reaction[:, None, None] * curved)
 
 
-def _scatter(tally: Tally, links: Flexures | Hinges, force: Array, own: Array) -> None:
+def _scatter(tally: ResidualSum, links: Flexures | Hinges, force: Array, own: Array) -> None:
     """Add link terms (l, b, 12) and (l, b, 12, 12) to their two bodies."""
     freedoms, ends = np.arange(6), ((links.first, slice(0, 6)), (links.second, slice(6, 12)))
     for bodies, rows in ends:
@@ -304,7 +304,7 @@ def _scatter(tally: Tally, links: Flexures | Hinges, force: Array, own: Array) -
             tally.stiffness.spread(6 * bodies, 6 * others, own[..., rows, columns])
 
 
-def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, share: Array) -> tuple[Pose, Array]:
+def advance(model: Nonlinear, pose: Pose, bent: tuple[FlexureState, ...], step: Array, share: Array) -> tuple[Pose, Array]:
     """Advance the pose by a fraction (b,) of the step (b, n), with inner unknowns of flexures; return also the largest inner step (b,)."""
     cases = len(pose.position)
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((cases, 6))], axis=1).reshape(cases, -1, 6)
@@ -312,7 +312,7 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, s
     for number, group in enumerate(model.flexures):
         inner = follow(group, bent[number], moved) * share[:, None]
         count = group.law.form.shape[-1]
-        strain.append(settle(group.law, pose.strain[number] + inner[..., :count]))
+        strain.append(relax_fields(group.law, pose.strain[number] + inner[..., :count]))
         wrench.append(pose.wrench[number] + inner[..., count:])
         largest = np.maximum(largest, np.max(np.abs(inner[..., :count]), axis=(0, 2)))
     moved = moved * share[:, None, None]
@@ -321,7 +321,7 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, s
     return Pose(pose.position + moved[..., :3], turn, tuple(strain), tuple(wrench), held), largest
 
 
-def apart(model: Nonlinear, bent: tuple[Bent, ...], step: Array) -> Array:
+def end_displacement(model: Nonlinear, bent: tuple[FlexureState, ...], step: Array) -> Array:
     """Return the largest relative motion (b,) of flexure ends in a step (b, n), over the length and in radians."""
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((len(step), 6))], axis=1).reshape(len(step), -1, 6)
     largest = [np.zeros(len(step))]
@@ -331,7 +331,7 @@ def apart(model: Nonlinear, bent: tuple[Bent, ...], step: Array) -> Array:
     return np.max(np.stack(largest), axis=0)
 
 
-def follow(group: Flexures, bent: Bent, moved: Array) -> Array:
+def follow(group: Flexures, bent: FlexureState, moved: Array) -> Array:
     """Compute the step (l, b, q + 6) of the inner unknowns of flexures for body motions (b, n + 1, 6)."""
     both = np.concatenate([np.moveaxis(moved[:, each], 1, 0) for each in (group.first, group.second)], axis=-1)[..., None]
     step = bent.answer.moved[..., :6] @ (end_motion(group.law, bent) @ both)

@@ -1,31 +1,31 @@
-/* Equilibria of many load cases, several of them in each vector: the same steps as element.py, condense.py, graph.py and newton.py, where
- * they are explained. A "lane" is one case; nothing that happens in a lane depends on the others, so results do not depend, to the bit, on
- * which cases are computed together. A lane whose case is done takes the next one.
+/* Equilibria of many load cases, several per vector: the same steps as in element.py, condense.py, graph.py and newton.py, which explain
+ * them. A "lane" is one case. Lanes are independent, so that results do not depend, to the bit, on the other cases of a call. A lane whose
+ * case is finished takes the next one.
  *
- * Two things are done in another order than in numpy. The plate's fields, which have least energy after every step, are condensed by the
- * factor that found them. And integrals along a flexure are taken on rotated modes, each of which is one column of the rotation times a
- * function of the place: double integrals are summed once a point, not once a pair of points (docs/nonlinear.md, 7).
+ * Two steps have another order than in numpy. The plate fields, which have least energy after every step, are condensed with the factor of
+ * their solution. Integrals along a flexure use rotated modes, each of which is one column of the rotation times a function of position:
+ * double integrals are summed once per point, not once per pair of points (docs/nonlinear.md, 7).
  */
 #include "lanes.h"
 
-#define POINTS 24 /* points along a flexure, at most */
-#define MODES 48  /* modes of curvature, at most */
-#define FIELDS 24 /* modes of the plate's fields, at most */
+#define POINTS 24 /* maximum points along a flexure */
+#define MODES 48  /* maximum curvature modes */
+#define FIELDS 24 /* maximum plate field modes */
 
 typedef double scalar __attribute__((may_alias));
 
 typedef struct {
     int64_t links, points, twist, across, bending, fields;
-    const double *weights, *running, *steps, *left; /* of the rule; left: 1 - s at its points */
+    const double *weights, *running, *steps, *left; /* of the rule; left: 1 - s at the points */
     const double *phi;                              /* links x modes x points */
     const double *inner;                            /* links x modes x 3 (points + 1) */
     const double *form;                             /* links x amplitudes x amplitudes */
-    const double *rest;                             /* links x amplitudes: what natural curvatures pull */
+    const double *rest;                             /* links x amplitudes: forces of natural curvatures */
     const double *plate;                            /* links x points x 2 x fields */
     const double *compliance;                       /* links x points x 3 */
     const double *scalar; /* links x 7: length, rigidity, trapeze, stretch of P2 and P4, weight per gravity, largest stiffness */
     const int64_t *joins; /* links x 2: bodies, the ground last */
-    const double *turn, *first, *second; /* links x 9, 3, 3: start frame and arms as drawn */
+    const double *turn, *first, *second; /* links x 9, 3, 3: nominal start frame and arms */
     double *strain, *wrench;             /* links x cases x amplitudes, links x cases x 6 */
 } Group;
 
@@ -35,9 +35,9 @@ typedef struct {
     const Group *group;
     double *position, *turn, *held; /* cases x (bodies + 1) x 3, x 9; cases x extra */
     const double *gravity;          /* cases x 3 */
-    const int64_t *body;            /* dead: the body of each place */
+    const int64_t *body;            /* dead: the body of each load point */
     const double *arm, *force;      /* dead x 3; cases x dead x 6 */
-    const double *residual, *stiffness; /* what other links and holds add: cases x n, cases x n x n; or none */
+    const double *residual, *stiffness; /* terms of other links and fixed coordinates: cases x n, cases x n x n; or none */
     int64_t *status, *count;            /* cases: 0 converged, 1 not, 2 singular; iterations */
     double *moved, *lack;               /* cases: the last step, the last residual inside flexures */
 } Task;
@@ -93,7 +93,7 @@ static inline void hat_times(lanes *r, const lanes *a, const lanes *b)
     }
 }
 
-/* exp [v]x: by series up to an angle of 1.5, else by the library. */
+/* exp [v]x: by series up to an angle of 1.5, else by the C library. */
 static void exponential(lanes *r, const lanes *v)
 {
     const lanes x = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -133,7 +133,7 @@ static void logarithm(lanes *v, const lanes *r)
 
 /* ---- linear systems ---- */
 
-/* a (n, n + m) by rows becomes the solutions in its last m columns: Crout's order, rows exchanged in each lane by itself. */
+/* a (n, n + m) by rows gets the solutions in its last m columns: Crout's order, with row exchanges per lane. */
 static void exchange(lanes *a, int wide, int s, marks where)
 {
     const marks here = where - where + s;
@@ -223,7 +223,7 @@ static void solve(lanes *restrict a, int n, int m)
 
 /* ---- one flexure ---- */
 
-/* Tables of a flexure that are made once, and what its cases have. */
+/* Tables of a flexure that are computed once, and arrays of its cases. */
 typedef struct {
     const Group *group;
     int number, modes, amplitudes, columns;
@@ -235,12 +235,12 @@ typedef struct {
     lanes wrench[6];
     lanes *curvature; /* points x 3 */
     lanes *factor;    /* fields x fields: unit lower factor, inverse pivots */
-    lanes *fields;    /* fields x modes: how fields follow curvatures */
+    lanes *fields;    /* fields x modes: fields per curvature */
     lanes *answer;    /* (modes + 6) x columns */
     lanes frame[9], lever[3], arm[3], weight[3], onset[3], mean[27], middle[3], lack;
 } Flexure;
 
-/* Scratch of one flexure at a time. */
+/* Work arrays of one flexure. */
 typedef struct {
     lanes *turned, *carried, *work; /* points x 3 x modes */
     lanes *matrix;                  /* (modes + 6) x (modes + 6 + columns) */
@@ -259,7 +259,7 @@ static void curve(const Flexure *f)
         }
 }
 
-/* The fields of least energy at the curvatures, and the factor of their matrix. */
+/* Fields of least energy at the curvatures, and the factor of their matrix. */
 static void settle(Flexure *f)
 {
     const int n = (int)f->group->points, e = (int)f->group->fields, q = f->amplitudes, k0 = f->modes, pair = e * (e + 1) / 2;
@@ -339,7 +339,7 @@ static void turns(const Flexure *f, lanes *turn)
     }
 }
 
-/* Stretching by Gaussian curvature: its first derivatives by k_x and k_z at the points, weights included, and the second into the matrix. */
+/* Stretching by Gaussian curvature: weighted first derivatives by k_x and k_z at the points; second derivatives added to the matrix. */
 static void stretch(Flexure *f, Scratch *s, lanes *first)
 {
     const int n = (int)f->group->points, e = (int)f->group->fields, q = f->amplitudes, k0 = f->modes, x = (int)f->group->twist;
@@ -403,7 +403,7 @@ static void stretch(Flexure *f, Scratch *s, lanes *first)
     }
 }
 
-/* Residual and matrix of a flexure at its amplitudes, end force and moment, solved for its end's motions; gap: how far the end lies off. */
+/* Residual and matrix of a flexure at its amplitudes, end force and moment, solved for its end motions; gap: distance of the end. */
 static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *wanted_turn, int heavy)
 {
     const Group *g = f->group;
@@ -414,7 +414,7 @@ static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *
     lanes tension[POINTS], first[3 * POINTS], end[3], *a = s->matrix;
     settle(f);
     turns(f, turn);
-    /* how it lies */
+    /* configuration */
     for (int c = 0; c < 3; c++) end[c] = all(0.0), f->middle[c] = all(0.0);
     for (int i = 0; i < n; i++) {
         const double *c = f->compliance + 3 * i;
@@ -479,7 +479,7 @@ static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *
             largest = larger(size_of(t), largest);
         }
     largest *= 1.0 / f->scalar[6];
-    /* how points turn and move by the amplitudes: turned and carried, points x 3 x modes */
+    /* rotation and displacement of points by the amplitudes: turned and carried, points x 3 x modes */
     for (int axis = 0; axis < 3; axis++)
         for (int d = 0; d < 3; d++) {
             lanes column[POINTS];
@@ -538,7 +538,7 @@ static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *
                 for (int i = 0; i < n; i++) t += g->left[i] * s->carried[(3 * i + d) * k0 + k];
                 a[k * wide + size + 7 + d] = t;
             }
-    /* geometric part: rows of modes in the section's axes, integrals of what lies beyond each point */
+    /* geometric part: rows of modes in section axes, integrals from each point to the end */
     for (int k = 0; k < k0; k++)
         for (int d = 0; d < 3; d++) {
             lanes beyond[POINTS];
@@ -622,7 +622,7 @@ static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *
     solve(a, size, columns);
     for (int r = 0; r < size; r++)
         for (int c = 0; c < columns; c++) f->answer[r * columns + c] = a[r * wide + size + c];
-    if (heavy) /* how its mean place moves by the end's motions and by the weight */
+    if (heavy) /* mean position by the end motions and by the weight */
         for (int d = 0; d < 3; d++)
             for (int c = 0; c < 9; c++) {
                 lanes t = c < 6 ? all(0.0) : sways[6 + at[3 * d + c - 6]];
@@ -638,7 +638,7 @@ static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *
 typedef struct {
     const Task *task;
     int64_t next, cases[WIDTH], at[WIDTH], done[WIDTH]; /* case of each lane, or -1; its iterations */
-    int flexures, n, condensed; /* condensed: whether the flexures already are, at these amplitudes and poses */
+    int flexures, n, condensed; /* condensed: whether flexures are condensed at these amplitudes and poses */
     Flexure *flexure;
     Scratch scratch;
     lanes *position, *turn, *held, *gravity, *force, *matrix, *step;
@@ -757,7 +757,7 @@ static lanes bend(Stage *s, Flexure *f)
     if (j6 >= 0) add_moved(s, k, f->arm, f->arm, j6, j6, 1.0);
     if (i6 >= 0) add_moved(s, k, f->lever, f->lever, i6, i6, 1.0);
     if (i6 >= 0 && j6 >= 0) add_moved(s, k, f->lever, f->arm, i6, j6, -1.0), add_moved(s, k, f->arm, f->lever, j6, i6, -1.0);
-    /* arms that turn under the forces */
+    /* rotation of arms under the forces */
     lanes force_hat[9], moment_hat[9], product[9];
     hat(force_hat, force), hat(moment_hat, moment);
     if (i6 >= 0) {
@@ -791,8 +791,8 @@ static lanes bend(Stage *s, Flexure *f)
         hat(weight_hat, weight), times_hat(product, weight_hat, hanging);
         add(s, i6 + 3, i6 + 3, product, -1.0);
         hat(local_hat, f->weight);
-        times_turned(sway, local_hat, f->frame); /* the weight in the start frame, by the turn of the first body */
-        for (int p = 0; p < 2; p++) { /* forces on the end by that, on all rows; and the weight's own motion by the end's, on its row */
+        times_turned(sway, local_hat, f->frame); /* weight in the start frame, by the rotation of the first body */
+        for (int p = 0; p < 2; p++) { /* end forces by the weight, on all rows; motion of the weight by the end, on its row */
             const double scale = unit * (p ? 1.0 : 1.0 / length);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 3; j++) block[3 * i + j] = scale * f->answer[(k0 + 3 * p + i) * columns + 7 + j];
@@ -827,7 +827,7 @@ static lanes bend(Stage *s, Flexure *f)
     return f->lack;
 }
 
-/* What else acts: dead loads, and what other links and holds add. */
+/* Other terms: constant-direction loads, other links and fixed coordinates. */
 static lanes load(Stage *s)
 {
     const Task *t = s->task;
@@ -857,7 +857,7 @@ static lanes load(Stage *s)
     return largest;
 }
 
-/* The step inside a flexure that goes with its bodies' motions; gives the largest change of an amplitude. */
+/* Step of the inner unknowns of a flexure for its body motions; returns the largest change of an amplitude. */
 static lanes follow(Stage *s, Flexure *f, const lanes *moved, lanes share, lanes *poison)
 {
     const int columns = f->columns, k0 = f->modes, e = (int)f->group->fields, x = (int)f->group->twist, heavy = (int)s->task->heavy;
@@ -889,7 +889,7 @@ static lanes follow(Stage *s, Flexure *f, const lanes *moved, lanes share, lanes
     return largest;
 }
 
-/* One iteration of all lanes: how far bodies and amplitudes moved, and how large the residual inside flexures was. */
+/* One iteration of all lanes: size of the step of bodies and amplitudes, and the previous residual of flexures. */
 static __attribute__((noinline)) void iterate(Stage *s, lanes *size, lanes *lack)
 {
     const Task *t = s->task;
@@ -930,7 +930,7 @@ static void *room(Store *store, size_t bytes)
     return found;
 }
 
-/* Lay out a stage in a store; without memory it only counts. */
+/* Lay out a stage in memory; without memory it counts only. */
 static void lay(Stage *s, Store *store, const Task *t)
 {
     int modes = 0, points = 0, fields = 0, columns = t->heavy ? 10 : 7, count = 0;
@@ -991,7 +991,7 @@ static int fits(const Task *t)
 
 enum { CONVERGED, NOT_CONVERGED, SINGULAR, OPEN };
 
-/* Whether all cases begin where the first does: then they share what flexures are in the first step. */
+/* Whether all cases have the start pose of the first: then they share the flexure tables of the first step. */
 static int begin_alike(const Task *t)
 {
     const int64_t n = t->bodies + 1;
@@ -1012,7 +1012,7 @@ static int begin_alike(const Task *t)
     return 1;
 }
 
-/* One iteration of the lanes that have a case, and how each of them stands after it. */
+/* One iteration of the lanes with a case, and their status after it. */
 static void advance(Stage *s)
 {
     const Task *t = s->task;
@@ -1032,14 +1032,14 @@ static void advance(Stage *s)
     for (int i = 0; i < s->flexures; i++) settle(s->flexure + i);
 }
 
-/* The next case that is open; -1 if there is none. */
+/* The next open case, or -1. */
 static int64_t draw(Stage *s)
 {
     while (s->next < s->task->cases && s->task->status[s->next] != OPEN) s->next++;
     return s->next < s->task->cases ? s->next++ : -1;
 }
 
-/* Fill all lanes; those without a case repeat the last one, and are not told. Gives how many have one. */
+/* Fill all lanes; lanes without a case repeat the last one, without output. Returns the number of lanes with a case. */
 static int fill(Stage *s)
 {
     int busy = 0;
@@ -1057,7 +1057,7 @@ int64_t flexstage_equilibria_width(void);
 
 int64_t flexstage_equilibria_width(void) { return WIDTH; }
 
-/* All cases of a task, in place; 1 without memory, or for tables that are too large. */
+/* All cases of a task, in place; returns 1 without memory, or for tables that are too large. */
 int64_t flexstage_equilibria(const Task *task)
 {
     Stage stage;

@@ -25,12 +25,12 @@ from flexstage.models.linear.channels import (
 )
 from flexstage.models.linear.elimination import eliminate
 from flexstage.models.linear.model import Contribution, LinearModel, strain_forces
-from flexstage.models.nonlinear.elements.corotated import Corotated, moved, stiffen_ports
+from flexstage.models.nonlinear.elements.corotated import Corotated, port_motion, stiffen_ports
 from flexstage.models.nonlinear.elements.element import mode_paths
+from flexstage.models.nonlinear.elements.fixed_coordinates import gradients
 from flexstage.models.nonlinear.elements.hinge import stiffen
-from flexstage.models.nonlinear.elements.hold import gradients
 from flexstage.models.nonlinear.equilibrium import State
-from flexstage.models.nonlinear.graph import Bent, assemble, end_motion, geometric, hinge_ends, weight_motion
+from flexstage.models.nonlinear.graph import FlexureState, assemble, end_motion, geometric, hinge_ends, weight_motion
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.parts.part import inner
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, cross_matrix, spatial_rotation, transport, twist_transform
@@ -90,8 +90,9 @@ class _Coordinates:
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
     """Linearise about a state, with all cases as a batch: modes, responses and losses of a displaced or loaded stage.
 
-    - Fixed coordinates are released: stiffness is that of the free stage under the reaction, which keeps its direction (for a rotation: the
-      moment conjugate to that component of the rotation vector). Coordinates in `locked`, a subset of the fixed ones, stay fixed.
+    - Fixed coordinates are released: stiffness is that of the free stage under the reaction, which keeps its direction. For a rotation the
+      reaction is the moment conjugate to its component of the rotation vector. Coordinates in `locked`, a subset of the fixed ones, stay
+      fixed.
     - Plate fields follow without mass.
     - Stiffness is symmetrised, and split by link, with one more contribution, `geometric`.
     - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
@@ -192,7 +193,7 @@ def _assembled(
             damping=model.damping,
             idle=(),
             provenance=f"about a state of the {model.provenance}",
-            unknown=tuple(f"{name}.{force}" for name in _untold(model) for force in FORCES),
+            unknown=tuple(f"{name}.{force}" for name in _unknown_outputs(model) for force in FORCES),
             viscous=_viscous(model),
         ),
     )
@@ -220,9 +221,9 @@ def _shaped(state: State, model: LinearModel) -> LinearModel:
     return replace(model, **{each.name: reshape(getattr(model, each.name)) for each in fields(LinearModel)})
 
 
-def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
+def _flexures(group: Flexures, bent: FlexureState) -> dict[str, _Linear]:
     """Every flexure of a group, by name."""
-    law, element, inside = group.law, bent.tangent, _inside(group, bent)
+    law, element, inside = group.law, bent.tangent, _inner_response(group, bent)
     amplitudes, swayed = inside.amplitudes, inside.swayed
     unit = (law.rigidity / law.length)[:, None, None, None]
     elastic = _transpose(amplitudes) @ (law.form[:, None] @ amplitudes) + _transpose(inside.gap) @ inside.hung
@@ -240,7 +241,7 @@ def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
     }
 
 
-def _follow_statically(item: _Linear, bent: Bent, law: FlexureLaw, place: int) -> _Linear:
+def _follow_statically(item: _Linear, bent: FlexureState, law: FlexureLaw, place: int) -> _Linear:
     """A flexure of a group without own coordinates: its 6x6 about its middle, and a `geometric` remainder."""
     whole = item.elastic + item.geometric
     follow = -np.linalg.solve(whole[..., 12:, 12:], whole[..., 12:, :12])
@@ -256,7 +257,7 @@ def _follow_statically(item: _Linear, bent: Bent, law: FlexureLaw, place: int) -
 
 
 @dataclass(frozen=True, eq=False)
-class _Inside:
+class _InnerResponse:
     """Dependent quantities of a flexure by its body and own coordinates: amplitudes (l, b, q, 12 + m), gap, force, weight."""
 
     amplitudes: Array
@@ -265,7 +266,7 @@ class _Inside:
     swayed: Array
 
 
-def _inside(group: Flexures, bent: Bent) -> _Inside:
+def _inner_response(group: Flexures, bent: FlexureState) -> _InnerResponse:
     law, element = group.law, bent.tangent
     motion = end_motion(law, bent)
     sway = weight_motion(bent) if bent.weight is not None else np.zeros((*motion.shape[:-2], 3, 12))
@@ -276,7 +277,7 @@ def _inside(group: Flexures, bent: Bent) -> _Inside:
     gap = element.reach @ amplitudes - ends[..., :3, :]
     if element.swayed is not None:
         gap = gap + element.swayed[..., 0, :, :] @ swayed
-    return _Inside(amplitudes, gap, np.linalg.solve(element.soft, gap), swayed)
+    return _InnerResponse(amplitudes, gap, np.linalg.solve(element.soft, gap), swayed)
 
 
 def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array]:
@@ -288,7 +289,7 @@ def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array
     return follow, root[..., None] * _transpose(vectors[..., 3:, :])
 
 
-def _mass(group: Flexures, bent: Bent, inside: _Inside) -> Array:
+def _mass(group: Flexures, bent: FlexureState, inside: _InnerResponse) -> Array:
     """Mass (l, b, 12 + m, 12 + m) of flexures: every point moves with the start, and by bending and stretch amplitudes."""
     law, lies = group.law, bent.lies
     place, turn = _points(group, bent, inside)
@@ -299,7 +300,7 @@ def _mass(group: Flexures, bent: Bent, inside: _Inside) -> Array:
     return moved + np.einsum("lbnci,lbncj->lbij", local, about[..., None] * local)
 
 
-def _points(group: Flexures, bent: Bent, inside: _Inside) -> tuple[Array, Array]:
+def _points(group: Flexures, bent: FlexureState, inside: _InnerResponse) -> tuple[Array, Array]:
     """Displacement and rotation of flexure points (l, b, n, 3, 12 + m) in stage axes by the flexure coordinates."""
     law, lies, amplitudes = group.law, bent.lies, inside.amplitudes
     paths, turned, soft = mode_paths(law, lies)
@@ -314,7 +315,7 @@ def _points(group: Flexures, bent: Bent, inside: _Inside) -> tuple[Array, Array]
     return place, turn + _pad(np.concatenate([np.zeros((*arm.shape, 3)), np.broadcast_to(np.eye(3), (*arm.shape, 3))], axis=-1), count)
 
 
-def _arms(group: Flexures, bent: Bent) -> Array:
+def _arms(group: Flexures, bent: FlexureState) -> Array:
     """Arms (l, b, n, 3) from the first body references to the points of flexures."""
     reach = group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
     return bent.onset[..., None, :] + reach
@@ -327,7 +328,7 @@ def modal_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> tu
     """
     model = state.model
     whole = assemble(model, state.pose, state.loads, state.hold)
-    inside = [_inside(group, bent) for group, bent in zip(model.flexures, whole.bent, strict=True)]
+    inside = [_inner_response(group, bent) for group, bent in zip(model.flexures, whole.bent, strict=True)]
     own = {name: each.amplitudes.shape[-1] - 12 for group, each in zip(model.flexures, inside, strict=True) for name in group.names}
     own |= {each.name: len(each.squares) for each in model.elements}
     order, joins, (rows, _) = _Coordinates(model, own), _joins(model), _hinges(state)
@@ -343,13 +344,13 @@ def modal_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> tu
     return np.moveaxis(full[: model.freedoms].reshape(-1, 6, full.shape[-1]), -1, 0), lines
 
 
-def _with_ends(bent: Bent, number: int, points: Array, moved: Array) -> tuple[Array, Array, Array]:
+def _with_ends(bent: FlexureState, number: int, points: Array, moved: Array) -> tuple[Array, Array, Array]:
     """Twists of the start, the points and the end of a flexure, (..., 6, k), by motions (12 + m, k) of its coordinates."""
     start, end = (transport(arm[number, 0]) @ moved[part] for arm, part in ((bent.onset, slice(0, 6)), (bent.arm, slice(6, 12))))
     return start[None], points, end[None]
 
 
-def flexure_motions(group: Flexures, bent: Bent, moved: Array, inner: Array) -> dict[str, Array]:
+def flexure_motions(group: Flexures, bent: FlexureState, moved: Array, inner: Array) -> dict[str, Array]:
     """Compute twists (points + 2, 6) of centre lines in the first case, by body twists (n + 1, 6) and inner unknowns (l, q + 6)."""
     law = group.law
     paths, turned, soft = (each[:, 0] for each in mode_paths(law, bent.lies))
@@ -388,7 +389,7 @@ def _turning(model: Nonlinear, state: State) -> Array:
     """Stiffness of bodies (b, n, n) due to rotation of the arms of constant-direction forces and of reactions."""
     cases = len(state.pose.position)
     result = np.zeros((cases, model.freedoms + 6, model.freedoms + 6))
-    dead = model.dead(state.loads)
+    dead = model.constant_wrenches(state.loads)
     arms = (state.pose.turn[:, model.places.body] @ model.places.arm[..., None])[..., 0]
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
     for place, number in enumerate(model.places.body):
@@ -448,7 +449,7 @@ def _inertia(
 def _strained(state: State, order: _Coordinates, element: Corotated) -> tuple[Contribution, Array]:
     """Own stiffness of a superelement over its strains and modes, and all its other terms (b, n, n)."""
     position, turn = state.pose.position[:, element.bodies], state.pose.turn[:, element.bodies]
-    rows = element.relative @ moved(element, position, turn).rows
+    rows = element.relative @ port_motion(element, position, turn).rows
     _, whole = stiffen_ports(element, position, turn, state.loads.gravity)
     ports, strained, modes = rows.shape[-1], rows.shape[-2], len(element.squares)
     select = order.ports(element.name, element.bodies)
@@ -559,7 +560,7 @@ def _loss(model: Nonlinear, name: str) -> float:
     return 0.0 if value is None else value
 
 
-def _untold(model: Nonlinear) -> Iterator[str]:
+def _unknown_outputs(model: Nonlinear) -> Iterator[str]:
     """Flexures, and ports of superelements, whose forces the model does not determine."""
     yield from (name for group in model.flexures for name in group.names)
     yield from (f"{each.name}.{port}" for each in model.elements for port in each.ports)

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.elements.condense import system
 from flexstage.models.nonlinear.equilibrium import State
-from flexstage.models.nonlinear.graph import Bent, assemble, follow
+from flexstage.models.nonlinear.graph import FlexureState, assemble, follow
 from flexstage.models.nonlinear.linearise import flexure_motions, modal_motions
 from flexstage.models.nonlinear.paths.critical_load import Critical
 
@@ -77,20 +77,20 @@ def critical_motion(critical: Critical) -> Motions:
     """Compute the buckling mode about the last stable state: of bodies, with flexures that follow; or of one flexure between fixed ends."""
     state = critical.state
     whole = assemble(state.model, state.pose, state.loads, state.hold)
-    moved = np.zeros((1, len(state.model.bodies) + 1, 6))
+    motions = np.zeros((1, len(state.model.bodies) + 1, 6))
     own = critical.link != ""
-    moved[0, :-1] = 0.0 if own else critical.shape
+    motions[0, :-1] = 0.0 if own else critical.shape
     lines: dict[str, Array] = {}
     for group, bent in zip(state.model.flexures, whole.bent, strict=True):
-        inner = (follow(group, bent, moved) - bent.answer.still)[:, 0]
+        inner = (follow(group, bent, motions) - bent.answer.still)[:, 0]
         if critical.link in group.names:
             place = group.names.index(critical.link)
             inner[place] = _softest(bent, place)
-        lines |= flexure_motions(group, bent, moved[0], inner)
-    return Motions(moved[:, :-1], {name: each[None] for name, each in lines.items()})
+        lines |= flexure_motions(group, bent, motions[0], inner)
+    return Motions(motions[:, :-1], {name: each[None] for name, each in lines.items()})
 
 
-def _softest(bent: Bent, place: int) -> Array:
+def _softest(bent: FlexureState, place: int) -> Array:
     """Amplitudes, force and moment of the own system of one flexure that are nearest to zero resistance."""
     matrix = system(bent.tangent)[place, 0]
     return np.linalg.svd(matrix)[2][-1]

@@ -9,18 +9,18 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.compiled import iterate_compiled, kernel, tables
-from flexstage.models.nonlinear.elements.hold import Hold
-from flexstage.models.nonlinear.graph import Rest, System, advance, apart, assemble, rest
+from flexstage.models.nonlinear.elements.fixed_coordinates import FixedCoordinates
+from flexstage.models.nonlinear.graph import OtherTerms, System, advance, assemble, end_displacement, other_terms
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status, put
-from flexstage.models.nonlinear.walk import walked
+from flexstage.models.nonlinear.walk import walk_tree
 
 _CHUNK, _STREAM, _DESIGNS = 128, 2048, 32
 """Cases at once, to fit the processor cache; cases of a stage that is iterated in C only, where lanes refill; and designs."""
 
 
 USUAL = SolverOptions()
-TOLD = ("status", "iterations", "residual", "reached")
+RESULT_FIELDS = ("status", "iterations", "residual", "reached")
 """Fields of the result of every case."""
 _GOES_ON = -1
 _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust", "push", "strut", "bow")
@@ -28,7 +28,7 @@ _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class EquilibriumSolution:
     """Poses of b cases with status, iterations, last residual of flexures, and load fraction `reached`.
 
     A failed case has the pose of that fraction if it is above zero, else its start pose.
@@ -40,12 +40,12 @@ class Found:
     residual: Array
     reached: Array
 
-    def of(self, cases: Array) -> Found:
+    def of(self, cases: Array) -> EquilibriumSolution:
         """Select cases."""
-        return Found(self.pose.of(cases), *(getattr(self, name)[cases] for name in TOLD))
+        return EquilibriumSolution(self.pose.of(cases), *(getattr(self, name)[cases] for name in RESULT_FIELDS))
 
 
-def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options: SolverOptions = USUAL) -> Found:
+def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions = USUAL) -> EquilibriumSolution:
     """Solve the equilibrium of every case under its whole load; failed cases are loaded in steps."""
     cases = np.arange(len(loads.inputs))
     most = _STREAM if _all_compiled(model, hold) else _CHUNK
@@ -54,7 +54,7 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options
     return _by_steps(model, start, loads, hold, options=options, solution=solution)
 
 
-def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[Found]:
+def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[EquilibriumSolution]:
     """Solve several designs of one structure, as many at once as one chunk of cases permits."""
     several = min(_DESIGNS, max(1, _CHUNK // len(tasks[0].loads.inputs)))
     if several == 1:
@@ -68,13 +68,13 @@ def _split(cases: Array, most: int) -> list[Array]:
     return np.array_split(cases, max(1, -(-len(cases) // most)))
 
 
-def _all_compiled(model: Nonlinear, hold: Hold) -> bool:
+def _all_compiled(model: Nonlinear, hold: FixedCoordinates) -> bool:
     """Whether the kernel supports the whole stage: only flexures and constant-direction loads, no fixed coordinates."""
     others = model.hinges.names or model.elements or len(hold.body)
     return not others and kernel() is not None and tables(model) is not None
 
 
-def join(parts: list[Found]) -> Found:
+def join(parts: list[EquilibriumSolution]) -> EquilibriumSolution:
     """Join the results of several batches."""
     if len(parts) == 1:
         return parts[0]
@@ -90,10 +90,12 @@ def join(parts: list[Found]) -> Found:
         wrench,
         np.concatenate([each.held for each in poses]),
     )
-    return Found(pose, *(np.concatenate([getattr(part, name) for part in parts]) for name in TOLD))
+    return EquilibriumSolution(pose, *(np.concatenate([getattr(part, name) for part in parts]) for name in RESULT_FIELDS))
 
 
-def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, options: SolverOptions, solution: Found) -> Found:
+def _by_steps(
+    model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, *, options: SolverOptions, solution: EquilibriumSolution
+) -> EquilibriumSolution:
     """Load failed cases in steps: twice the step after success, half after failure."""
     failed = np.flatnonzero(solution.status != Status.CONVERGED)
     share, width, pose = np.zeros(len(failed)), np.full(len(failed), 0.5), start.of(failed)
@@ -113,12 +115,14 @@ def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, option
     return replace(reached, pose=reached.pose.put(failed[lost], pose.of(np.flatnonzero(lost))))
 
 
-def merge(solution: Found, cases: Array, other: Found) -> Found:
+def merge(solution: EquilibriumSolution, cases: Array, other: EquilibriumSolution) -> EquilibriumSolution:
     """Replace some cases of a result."""
-    return Found(solution.pose.put(cases, other.pose), *(put(getattr(solution, name), cases, getattr(other, name)) for name in TOLD))
+    return EquilibriumSolution(
+        solution.pose.put(cases, other.pose), *(put(getattr(solution, name), cases, getattr(other, name)) for name in RESULT_FIELDS)
+    )
 
 
-def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options: SolverOptions) -> Found:
+def search(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions) -> EquilibriumSolution:
     """Iterate all cases together; finished cases leave. In C if a kernel supports all flexures of the stage."""
     (solutions,) = search_designs((Task(model, start, loads, hold),), options)
     return solutions
@@ -131,7 +135,7 @@ class Task:
     model: Nonlinear
     start: Pose
     loads: Loads
-    hold: Hold
+    hold: FixedCoordinates
 
     def of(self, cases: Array, pose: Pose) -> Task:
         """Select cases, from poses of all."""
@@ -164,9 +168,9 @@ class _Search:
         done = (step.size < options.step) & (step.gap < options.gap)
         self.status[cases[done]], self.status[cases[lost]] = Status.CONVERGED, Status.SINGULAR
 
-    def found(self, pose: Pose) -> Found:
+    def found(self, pose: Pose) -> EquilibriumSolution:
         status = np.where(self.status == _GOES_ON, Status.NOT_CONVERGED, self.status)
-        return Found(pose, status, self.iterations, self.residual, 1.0 * (status == Status.CONVERGED))
+        return EquilibriumSolution(pose, status, self.iterations, self.residual, 1.0 * (status == Status.CONVERGED))
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +182,7 @@ class _Step:
     gap: Array
 
 
-def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[Found]:
+def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[EquilibriumSolution]:
     """Iterate several designs of one structure, each with its cases; elements other than flexures are evaluated together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
@@ -199,13 +203,15 @@ def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[Found]
     return [each.found(pose) for each, pose in zip(searches, poses, strict=True)]
 
 
-def _parts(task: Task) -> tuple[Nonlinear, Pose, Loads, Hold]:
+def _parts(task: Task) -> tuple[Nonlinear, Pose, Loads, FixedCoordinates]:
     return task.model, task.start, task.loads, task.hold
 
 
-def _search_compiled(task: Task, options: SolverOptions) -> Found:
+def _search_compiled(task: Task, options: SolverOptions) -> EquilibriumSolution:
     solutions = iterate_compiled(task.model, task.start, task.loads, options, None)
-    return Found(solutions.pose, solutions.status, solutions.count, solutions.lack, 1.0 * (solutions.status == Status.CONVERGED))
+    return EquilibriumSolution(
+        solutions.pose, solutions.status, solutions.count, solutions.lack, 1.0 * (solutions.status == Status.CONVERGED)
+    )
 
 
 def _iterate_compiled(tasks: list[Task], options: SolverOptions) -> list[_Step]:
@@ -215,17 +221,17 @@ def _iterate_compiled(tasks: list[Task], options: SolverOptions) -> list[_Step]:
     return [_Step(each.pose, each.moved, each.lack) for each in results]
 
 
-def _rests(tasks: list[Task]) -> list[Rest | None]:
+def _rests(tasks: list[Task]) -> list[OtherTerms | None]:
     """Terms of elements other than flexures, of all designs together; one by one with superelements."""
     if len(tasks) == 1 or tasks[0].model.elements:
-        return [rest(*_parts(each)) for each in tasks]
+        return [other_terms(*_parts(each)) for each in tasks]
     counts = [len(each.loads.inputs) for each in tasks]
-    whole = rest(*_parts(_together(tasks, np.repeat(np.arange(len(tasks)), counts))))
+    whole = other_terms(*_parts(_together(tasks, np.repeat(np.arange(len(tasks)), counts))))
     if whole is None:
         return [None] * len(tasks)
     ends = np.cumsum(counts)[:-1]
     parts = zip(np.split(whole.residual, ends), np.split(whole.stiffness, ends), strict=True)
-    return [Rest(residual, stiffness) for residual, stiffness in parts]
+    return [OtherTerms(residual, stiffness) for residual, stiffness in parts]
 
 
 def _together(tasks: list[Task], design: Array) -> Task:
@@ -249,16 +255,16 @@ def _together(tasks: list[Task], design: Array) -> Task:
     return Task(replace(model, hinges=replace(model.hinges, **tables)), pose, loads, held)
 
 
-def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, options: SolverOptions) -> tuple[Pose, Array, Array]:
+def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions) -> tuple[Pose, Array, Array]:
     """Compute one step: the new pose, the size of the step and the flexure residuals before it (b,)."""
     system = assemble(model, pose, loads, hold)
     step = system.solved(-system.residual)
     size = motion(model, step, model.size)
     many = not isinstance(system.matrix, np.ndarray)
-    far = apart(model, system.bent, step) if many else motion(model, step, model.reach)
-    share = np.minimum(1.0, options.limit / np.maximum(far, options.limit))
+    largest = end_displacement(model, system.bent, step) if many else motion(model, step, model.reach)
+    share = np.minimum(1.0, options.limit / np.maximum(largest, options.limit))
     after, inside = advance(model, pose, system.bent, step, share)
-    return walked(model, after, loads) if many else after, np.maximum(size, inside), lack(model, system)
+    return walk_tree(model, after, loads) if many else after, np.maximum(size, inside), lack(model, system)
 
 
 def motion(model: Nonlinear, step: Array, length: float) -> Array:

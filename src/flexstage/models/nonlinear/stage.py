@@ -48,7 +48,7 @@ class Flexures:
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class LoadPoints:
     """Points of constant-direction loads: the number of a body and the nominal arm (d, 3) from its reference."""
 
     body: Array
@@ -73,7 +73,7 @@ class Nonlinear:
     hinges: Hinges
     elements: tuple[Corotated, ...]
     inputs: tuple[Channel, ...]
-    places: Places
+    places: LoadPoints
     stated: Array
     masses: Array
     inertia: Mapping[str, Array]
@@ -106,7 +106,7 @@ class Nonlinear:
         """Return the number of a body."""
         return len(self.bodies) if name == GROUND else self.bodies.index(name)
 
-    def drawn(self, cases: int) -> Pose:
+    def nominal_pose(self, cases: int) -> Pose:
         """Return the nominal, unloaded pose of b cases."""
         count = len(self.bodies) + 1
         sizes = [(len(group.names), cases, group.law.form.shape[-1]) for group in self.flexures]
@@ -118,7 +118,7 @@ class Nonlinear:
             np.zeros((cases, len(self.hinges.locked))),
         )
 
-    def dead(self, loads: Loads) -> Array:
+    def constant_wrenches(self, loads: Loads) -> Array:
         """Return the constant-direction wrenches (b, d, 6) at the points."""
         wrench = np.zeros((len(loads.inputs), len(self.places.body), 6))
         columns = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
@@ -140,7 +140,7 @@ class _Growth:
 
 
 @dataclass(frozen=True, eq=False)
-class _Drawn:
+class _NominalBodies:
     """Nominal bodies: `number` of each by name, the ground last, `reference` (n + 1, 3), and their thermal growth."""
 
     number: Mapping[str, int]
@@ -156,8 +156,8 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     small strains in the flexures. Batches of designs are refused.
 
     `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely, a part at
-    the mean temperature of its ends, the `ground` (of this material; absent: as in `drift`) about the origin; incompatible expansion bends
-    the parts. Moduli are constant. A temperature requires the expansion of every material.
+    the mean temperature of its ends. The `ground` expands about the origin (of this material; absent: as in `drift`). Incompatible
+    expansion bends the parts. Moduli are constant. A temperature requires the expansion of every material.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]
@@ -169,7 +169,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     laws = _laws(assembly, resolution)
     number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
     growth = _growth(mechanism, assembly, bodies, temperature, ground)
-    drawn = _Drawn(number, reference, growth)
+    drawn = _NominalBodies(number, reference, growth)
     flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, drawn)
     centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
     places, stated, masses = _places(mechanism, assembly, number, reference, centred)
@@ -182,7 +182,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
         hinges=_hinges(mechanism, assembly, centred, drawn),
         elements=tuple(_element(item, number, reference) for item in assembly.superelements.values()),
         inputs=input_channels(assembly),
-        places=Places(places.body, places.arm * growth.bodies[places.body, None]),
+        places=LoadPoints(places.body, places.arm * growth.bodies[places.body, None]),
         stated=stated,
         masses=masses,
         inertia={name: item for name, item in carried.items() if item is not None},
@@ -231,14 +231,14 @@ def _one(value: Array, name: str) -> Array:
     return np.asarray(value, dtype=float)
 
 
-def _flexures(assembly: Assembly, laws: Mapping[str, FlexureLaw], drawn: _Drawn) -> tuple[Flexures, ...]:
+def _flexures(assembly: Assembly, laws: Mapping[str, FlexureLaw], drawn: _NominalBodies) -> tuple[Flexures, ...]:
     groups: dict[tuple[int, ...], list[str]] = {}
     for name, item in laws.items():
         groups.setdefault(item.signature, []).append(name)
     return tuple(_group(assembly, names, [laws[name] for name in names], drawn) for names in groups.values())
 
 
-def _group(assembly: Assembly, names: list[str], laws: list[FlexureLaw], drawn: _Drawn) -> Flexures:
+def _group(assembly: Assembly, names: list[str], laws: list[FlexureLaw], drawn: _NominalBodies) -> Flexures:
     reference, growth = drawn.reference, drawn.growth
     links = [assembly.links[name] for name in names]
     half = 0.5 * np.stack([item.length for item in laws])[:, None] * np.stack([link.frame.rotation[:, 0] for link in links])
@@ -256,7 +256,7 @@ def _numbers(links: Iterable[PlacedLink], number: Mapping[str, int]) -> tuple[Ar
     return np.array(first, dtype=int), np.array(second, dtype=int)
 
 
-def _hinges(mechanism: Mechanism, assembly: Assembly, links: Mapping[str, PlacedLink], drawn: _Drawn) -> Hinges:
+def _hinges(mechanism: Mechanism, assembly: Assembly, links: Mapping[str, PlacedLink], drawn: _NominalBodies) -> Hinges:
     first, second = _numbers(links.values(), drawn.number)
     count, inputs = len(links), len(input_channels(assembly))
     reference, growth = drawn.reference, drawn.growth
@@ -331,7 +331,7 @@ def _halves_more(links: Mapping[str, PlacedLink], growth: _Growth, bodies: Array
 
 def _places(
     mechanism: Mechanism, assembly: Assembly, number: Mapping[str, int], reference: Array, centred: Mapping[str, PlacedLink]
-) -> tuple[Places, Array, Array]:
+) -> tuple[LoadPoints, Array, Array]:
     """Points of wrench inputs, of specified forces and of masses: bodies, payloads and halves of links about centres."""
     inputs = [(number[place.body], place.point, np.zeros(3), 0.0) for place in wrench_places(assembly).values()]
     forces = [(number[item.body], stack(item.at), stack(item.force), 0.0) for item in mechanism.forces.values()]
@@ -344,7 +344,7 @@ def _places(
     rows = [*inputs, *forces, *masses, *halves]
     body = np.array([row[0] for row in rows], dtype=int)
     arms = np.array([row[1] for row in rows]).reshape(-1, 3) - reference[body]
-    return Places(body, arms), np.array([row[2] for row in rows]).reshape(-1, 3), np.array([row[3] for row in rows])
+    return LoadPoints(body, arms), np.array([row[2] for row in rows]).reshape(-1, 3), np.array([row[3] for row in rows])
 
 
 def _halves(link: PlacedLink, number: Mapping[str, int]) -> list[tuple[int, Array, Array, float]]:

@@ -54,7 +54,7 @@ def tree(model: Nonlinear) -> tuple[Step, ...]:
     return tuple(steps)
 
 
-def walked(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:
+def walk_tree(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:
     """Compute the pose with bodies at the ends of the tree's flexures, by their amplitudes and forces."""
     ends, turns = [], []
     for number, group in enumerate(model.flexures):

@@ -12,7 +12,7 @@ from flexstage.models.nonlinear.elements.element import Tangent, field_system
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class FlexureResponse:
     """Response of the unknowns (..., q + 6) of a flexure: `still` at a fixed end, and `moved` (..., q + 6, 6) per motion of its end.
 
     A flexure with weight has three more columns: per change of the weight in its start frame.
@@ -34,7 +34,7 @@ def system(tangent: Tangent) -> Array:
     return result
 
 
-def condense(tangent: Tangent, gap: Array) -> Answer:
+def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
     """Solve for the motions of the end and for the residual; `gap` (..., 6) is the distance of the end from its body. NaN if singular."""
     matrix = system(tangent)
     size = tangent.hessian.shape[-1]
@@ -45,10 +45,10 @@ def condense(tangent: Tangent, gap: Array) -> Answer:
         right[..., :size, 7:] = np.swapaxes(tangent.hung, -1, -2)
         right[..., size : size + 3, 7:] = -tangent.swayed[..., 0, :, :]
     answer = solve(matrix, right)
-    return Answer(answer[..., 0], answer[..., 1:])
+    return FlexureResponse(answer[..., 0], answer[..., 1:])
 
 
-def settle(law: FlexureLaw, strain: Array) -> Array:
+def relax_fields(law: FlexureLaw, strain: Array) -> Array:
     """Compute amplitudes (..., b, q) with plate fields of least energy, which is quadratic in them, at the curvatures.
 
     A joint Newton iteration on fields and curvatures overshoots in thin leaves, where stretching depends on their squared product.

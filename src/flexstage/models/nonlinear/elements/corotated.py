@@ -50,7 +50,7 @@ class Corotated:
 
 
 @dataclass(frozen=True, eq=False)
-class Moved:
+class PortMotion:
     """Ports in the corotated frame: motions (..., 6 p), and their derivatives (..., 6 p, 6 p) by the body motions.
 
     `frame` (..., 3, 3), and the derivatives of its rotation (..., 3, 6 p) and of the mean position (..., 3, 6 p).
@@ -63,7 +63,7 @@ class Moved:
     drift: Array
 
 
-def moved(element: Corotated, position: Array, turn: Array) -> Moved:
+def port_motion(element: Corotated, position: Array, turn: Array) -> PortMotion:
     """Compute the port motions at positions (..., p, 3) and rotations (..., p, 3, 3) of their bodies."""
     count = len(element.bodies)
     frame = _mean(turn)
@@ -91,12 +91,12 @@ def moved(element: Corotated, position: Array, turn: Array) -> Moved:
     motion = np.concatenate([shift, angle], axis=-1)
     rows = np.concatenate([shifted, turned], axis=-2)
     flat = (*motion.shape[:-2], 6 * count)
-    return Moved(motion.reshape(flat), rows.reshape(*flat, 6 * count), frame, turning, drift)
+    return PortMotion(motion.reshape(flat), rows.reshape(*flat, 6 * count), frame, turning, drift)
 
 
 def resist(element: Corotated, position: Array, turn: Array, gravity: Array) -> Array:
     """Compute the internal forces (..., 6 p) on the port bodies, less the weight under `gravity` (..., 3)."""
-    ports = moved(element, position, turn)
+    ports = port_motion(element, position, turn)
     strain = (element.relative @ ports.motion[..., None])[..., 0]
     force = (element.relative.T @ (element.stiffness @ strain[..., None]))[..., 0]
     pulled = (_transpose(ports.frame) @ gravity[..., None])[..., 0]

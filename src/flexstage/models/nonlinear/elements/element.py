@@ -21,7 +21,7 @@ from flexstage.spatial.rotation import cross, exponential, magnus
 class Shape:
     """Configuration of a flexure: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its points, rotation there and at its end.
 
-    `rate` (..., b, n, 3) is r', `place` (..., b, n, 3) is r, `end` (..., b, 3) is r at its end; `soft` (..., b, n, 3, 3) is R C_n R^T,
+    `rate` (..., b, n, 3) is r', `place` (..., b, n, 3) is r, `end` (..., b, 3) is r at its end. `soft` (..., b, n, 3, 3) is R C_n R^T,
     `tension` (..., b, n) is N.
 
     `force` at the end and `weight` are its loads.
@@ -47,8 +47,8 @@ class Tangent:
 
     `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n.
 
-    For a flexure with weight, `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are the derivatives of its mean position by amplitudes,
-    force and weight.
+    `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are derivatives of the mean position by amplitudes, force and weight (absent
+    without weight).
     """
 
     gradient: Array

@@ -3,8 +3,8 @@
 Both bodies are extended to the centre, to frames a and b. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the half-way
 frame R_m = R_a exp(psi / 2): equal for exchanged ends.
 
-A strut (a spring with a length L) turns about both ends: its d_x is |x_b - x_a + (R_a + R_b) e_1 L / 2| - L, so that its force acts along
-the line of its ends.
+A strut (a spring with a length L) turns about both ends: its d_x is |x_b - x_a + (R_a + R_b) e_1 L / 2| - L. Its force then acts along the
+line of its ends.
 
 A part with a length also shortens by its own bending: 1/2 e^T G e is added to e = (d, psi) (`beams.geometric.foreshortening`).
 """

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array, Number
-from flexstage.models.nonlinear.elements.corotated import moved as moved_ports
+from flexstage.models.nonlinear.elements.corotated import port_motion
 from flexstage.models.nonlinear.elements.element import Shape, shape
 from flexstage.models.nonlinear.elements.hinge import deform, imposed
 from flexstage.models.nonlinear.equilibrium import State
@@ -85,8 +85,8 @@ def strains(state: State) -> Strains:
 def law_reserve(state: State) -> tuple[float, str]:
     """Return the remaining range of the link laws at a state, 1 if undeformed, 0 at the limit; and the reason.
 
-    Flexures have a limit strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % wrong: at a relative
-    rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length.
+    Flexures have a limit strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % wrong. This is at a
+    relative rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length.
 
     If the length is unknown, the extent of the stage replaces it; a spring with a length ends at twice that displacement. Links without
     stiffness have no limit.
@@ -100,7 +100,7 @@ def law_reserve(state: State) -> tuple[float, str]:
     links = zip(hinges.names, np.where(stiff, moved[:, 0], 0.0), shift, strict=True)
     shares = {name: _share(own, far) for name, own, far in links}
     for each in model.elements:
-        motion = moved_ports(each, pose.position[:, each.bodies], pose.turn[:, each.bodies]).motion
+        motion = port_motion(each, pose.position[:, each.bodies], pose.turn[:, each.bodies]).motion
         shares[each.name] = _share(motion.reshape(-1, 6), _SHIFT * _diagonal(each.place))
     used += [(share, f"{name} is deformed beyond the range of its 6x6 there") for name, share in shares.items()]
     return min((1.0 - share, why) for share, why in used)

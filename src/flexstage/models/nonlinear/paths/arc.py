@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.elements.hold import Hold
+from flexstage.models.nonlinear.elements.fixed_coordinates import FixedCoordinates
 from flexstage.models.nonlinear.graph import System, advance, assemble, exerted_by
-from flexstage.models.nonlinear.newton import TOLD, Found, lack, search
+from flexstage.models.nonlinear.newton import RESULT_FIELDS, EquilibriumSolution, lack, search
 from flexstage.models.nonlinear.paths.inertia import count_descents, lowest_stiffness, stiffness_scale, weakest_flexure
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status, put
-from flexstage.models.nonlinear.walk import walked
+from flexstage.models.nonlinear.walk import walk_tree
 from flexstage.spatial.rotation import logarithm
 
 _PROBE, _ONSET = 0.03, 1e-3
@@ -42,7 +42,7 @@ _AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class ProportionalLoading:
     """Loads and fixed coordinates of one case that depend on a factor: values at zero, and gains per unit of the factor.
 
     `options` are for each equilibrium solution; stability is evaluated in the rows `kept` of its system.
@@ -50,13 +50,13 @@ class Course:
 
     model: Nonlinear
     loads: Loads
-    hold: Hold
+    hold: FixedCoordinates
     gain: Loads
     moved: Array
     options: SolverOptions
     kept: list[int]
 
-    def at(self, factor: float) -> tuple[Loads, Hold]:
+    def at(self, factor: float) -> tuple[Loads, FixedCoordinates]:
         """Return loads and fixed coordinates at a factor."""
         loads = Loads(*(getattr(self.loads, name) + factor * getattr(self.gain, name) for name in ("inputs", "gravity", "constant")))
         return loads, replace(self.hold, value=self.hold.value + factor * self.moved)
@@ -95,7 +95,7 @@ class Point:
       a reference.
     """
 
-    found: Found
+    found: EquilibriumSolution
     factor: float
     step: Array
     system: System
@@ -107,31 +107,31 @@ class Point:
     reference: Reference | None
 
 
-def follow_course(course: Course, begin: Point, length: float, points: int) -> Iterator[Point]:
+def continue_path(loading: ProportionalLoading, begin: Point, length: float, points: int) -> Iterator[Point]:
     """Generate equilibria beyond `begin`, at most `length` apart in body motion, over the stage size and in radians.
 
     Ends after `points` times the length, or if no equilibrium is found at a small fraction of it.
     """
     gone = 0.0
-    for point in march(course, begin, length, longest=length):
+    for point in march(loading, begin, length, longest=length):
         yield point
         gone += float(np.linalg.norm(point.step))
         if gone > (points - 0.5) * length:
             return
 
 
-def march(course: Course, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
+def march(loading: ProportionalLoading, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
     """Generate equilibria beyond `begin` with step control by the path curvature and the prediction errors.
 
-    A step is repeated with a shorter length if the tangent turns, the equilibrium is off the tangent, or slope and lowest stiffness differ
-    from their prediction. So no step skips two events.
+    A step is repeated with a shorter length if the tangent turns, the equilibrium is off the tangent, or slope and stiffness differ from
+    their prediction. So no step skips two events.
 
     Ends if the step is too small a fraction of the longest previous one.
     """
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):
-        after = step_along(course, last, length)
-        error = np.inf if after is None else misfit(course.scale, before, last, after)
+        after = step_along(loading, last, length)
+        error = np.inf if after is None else misfit(loading.scale, before, last, after)
         if after is not None and error <= 1.0:
             yield after
             most, before, last = max(most, length), last, after
@@ -173,12 +173,12 @@ def _ahead(before: Point | None, last: Point) -> float:
     return _AHEAD * float(np.linalg.norm(last.step)) * last.stiffness / (before.stiffness - last.stiffness)
 
 
-def step_along(course: Course, last: Point, length: float) -> Point | None:
+def step_along(loading: ProportionalLoading, last: Point, length: float) -> Point | None:
     """Compute the equilibrium one step length further, or `None` without convergence (E. Riks, Int. J. Solids Structures 15, 1979).
 
     Corrections keep the factor if the path is steep; else they are normal to the step so far, and the factor follows.
     """
-    scale, options, model = course.scale, course.options, course.model
+    scale, options, model = loading.scale, loading.options, loading.model
     whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose
     scaled = length * scale * last.along
     factor, step, turns = last.factor, whole, abs(last.slope) < _SOFTER * last.steepest
@@ -186,10 +186,10 @@ def step_along(course: Course, last: Point, length: float) -> Point | None:
     with np.errstate(all="ignore"):
         for iteration in range(options.iterations):
             if iteration:
-                system = assemble(model, pose, *course.at(factor))
+                system = assemble(model, pose, *loading.at(factor))
                 step, change = _solved(system, -system.residual[0]), 0.0
                 if turns:
-                    along = _solved(system, load_rate(course, pose, factor, system))
+                    along = _solved(system, load_rate(loading, pose, factor, system))
                     change = -float(scaled @ (scale * step) / (scaled @ (scale * along)))
                     step = step + change * along
             size = float(np.linalg.norm(scale * step))
@@ -197,84 +197,90 @@ def step_along(course: Course, last: Point, length: float) -> Point | None:
                 return None
             pose, inside = advance(model, pose, system.bent, step[None], np.ones(1))
             if not isinstance(system.matrix, np.ndarray):
-                pose = walked(model, pose, course.at(factor + change)[0])
+                pose = walk_tree(model, pose, loading.at(factor + change)[0])
             factor, scaled = factor + change, scaled + (scale * step if iteration else 0.0)
             if iteration and max(size, float(inside[0])) < enough and abs(change) <= options.step * (own + abs(factor)):
                 gap = float(lack(model, system)[0])
                 if gap < options.gap:
-                    return point_at(course, _one(pose, iteration + 1, gap), factor, step=scaled, start=last)
+                    return point_at(loading, _one(pose, iteration + 1, gap), factor, step=scaled, start=last)
     return None
 
 
-def load_rate(course: Course, pose: Pose, factor: float, system: System) -> Array:
+def load_rate(loading: ProportionalLoading, pose: Pose, factor: float, system: System) -> Array:
     """Compute the derivative (n,) of loads and fixed coordinates by the factor at a pose."""
-    if course.plain:
-        return np.append(exerted_by(course.model, pose, course.gain)[0], np.zeros(len(course.hold.body)))
+    if loading.plain:
+        return np.append(exerted_by(loading.model, pose, loading.gain)[0], np.zeros(len(loading.hold.body)))
     probe = _PROBE * abs(factor) or _ONSET
-    return (system.residual[0] - assemble(course.model, pose, *course.at(factor + probe)).residual[0]) / probe
+    return (system.residual[0] - assemble(loading.model, pose, *loading.at(factor + probe)).residual[0]) / probe
 
 
 def _solved(system: System, right: Array) -> Array:
     return system.solved(right[None])[0]
 
 
-def _one(pose: Pose, iterations: int, gap: float) -> Found:
-    return Found(pose, np.array([Status.CONVERGED]), np.array([iterations]), np.array([gap]), np.ones(1))
+def _one(pose: Pose, iterations: int, gap: float) -> EquilibriumSolution:
+    return EquilibriumSolution(pose, np.array([Status.CONVERGED]), np.array([iterations]), np.array([gap]), np.ones(1))
 
 
-def first_point(course: Course, pose: Pose, factor: float) -> Point:
+def first_point(loading: ProportionalLoading, pose: Pose, factor: float) -> Point:
     """Build the first point of a path from a known equilibrium, with an increasing factor."""
-    return point_at(course, _one(pose, 0, 0.0), factor, step=0.0 * course.scale)
+    return point_at(loading, _one(pose, 0, 0.0), factor, step=0.0 * loading.scale)
 
 
-def critical_point(course: Course, pose: Pose, factor: float, into: Array | None) -> Point:
+def critical_point(loading: ProportionalLoading, pose: Pose, factor: float, into: Array | None) -> Point:
     """Build the first point at a limit point, or at a bifurcation with the motion `into` (n,) of its branch.
 
     Just before a limit point the factor increases along the path; just past it, with an unstable motion, it decreases.
     """
-    point = first_point(course, pose, factor)
-    along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(course.scale * into)
+    point = first_point(loading, pose, factor)
+    along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(loading.scale * into)
     return replace(point, along=along, slope=0.0, steepest=np.inf, stiffness=np.nan, reference=None)
 
 
-def point_at(course: Course, solution: Found, factor: float, *, step: Array, start: Point | None = None) -> Point:
+def point_at(
+    loading: ProportionalLoading, solution: EquilibriumSolution, factor: float, *, step: Array, start: Point | None = None
+) -> Point:
     """Compute tangent, number of unstable motions and lowest stiffness at an equilibrium, given the previous point."""
-    model = course.model
+    model = loading.model
     with np.errstate(all="ignore"):
-        system = assemble(model, solution.pose, *course.at(factor))
-        rate = _solved(system, load_rate(course, solution.pose, factor, system))
-        slope = np.copysign(1.0 / np.linalg.norm(course.scale * rate), 1.0 if start is None else step @ (course.scale * rate))
+        system = assemble(model, solution.pose, *loading.at(factor))
+        rate = _solved(system, load_rate(loading, solution.pose, factor, system))
+        slope = np.copysign(1.0 / np.linalg.norm(loading.scale * rate), 1.0 if start is None else step @ (loading.scale * rate))
         along = slope * rate
-    motions, stiffness = int(count_descents(model, system, course.kept)[0]), np.nan
+    motions, stiffness = int(count_descents(model, system, loading.kept)[0]), np.nan
     reference = None if start is None else start.reference
     if start is None or reference is not None:
         scale = stiffness_scale(model, system) if reference is None else reference.scale
-        own, whole = weakest_flexure(model, system)[0], lowest_stiffness(model, system, course.kept, scale)[0]
+        own, whole = weakest_flexure(model, system)[0], lowest_stiffness(model, system, loading.kept, scale)[0]
         stiffness = (-1.0 if motions else 1.0) * (abs(whole / reference.stage * own / reference.flexure) if reference else 1.0)
         reference = reference or Reference(scale, whole, own)
     steepest = max(abs(float(slope)), 0.0 if start is None else start.steepest)
     return Point(solution, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
 
 
-def rescue(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, options: SolverOptions) -> Found:
+def complete_paths(
+    model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
+) -> EquilibriumSolution:
     """Continue the cases with a partial load by arc length to the whole load or to the limit point."""
     partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])
-        after = _rescued(model, loads.of(one), hold.of(one), solution.of(one), options)
-        fields = (put(getattr(solution, name), one, getattr(after, name)) for name in TOLD)
-        solution = Found(solution.pose.put(one, after.pose), *fields)
+        after = _completed_path(model, loads.of(one), hold.of(one), solution.of(one), options)
+        fields = (put(getattr(solution, name), one, getattr(after, name)) for name in RESULT_FIELDS)
+        solution = EquilibriumSolution(solution.pose.put(one, after.pose), *fields)
     return solution
 
 
-def _rescued(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, options: SolverOptions) -> Found:
+def _completed_path(
+    model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
+) -> EquilibriumSolution:
     """One case: the load is continued from the fraction `reached`."""
     rows = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
-    course = Course(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, options, rows)
-    last = first_point(course, solution.pose, float(solution.reached[0]))
+    loading = ProportionalLoading(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, options, rows)
+    last = first_point(loading, solution.pose, float(solution.reached[0]))
     stride = _STRIDE
     for _ in range(options.arcs):
-        after = step_along(course, last, stride * _moved(course, last.found.pose))
+        after = step_along(loading, last, stride * _moved(loading, last.found.pose))
         if after is None:
             stride *= 0.25
             if stride < _LEAST:
@@ -290,8 +296,8 @@ def _rescued(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, option
     return solution
 
 
-def _moved(course: Course, pose: Pose) -> float:
+def _moved(loading: ProportionalLoading, pose: Pose) -> float:
     """Displacement of bodies from the nominal position, over the stage size and in radians."""
-    model = course.model
-    apart = (pose.position[0, :-1] - model.reference[:-1]) / model.size
-    return float(np.linalg.norm(np.concatenate([apart, logarithm(pose.turn[0, :-1])]))) or 1.0
+    model = loading.model
+    shift = (pose.position[0, :-1] - model.reference[:-1]) / model.size
+    return float(np.linalg.norm(np.concatenate([shift, logarithm(pose.turn[0, :-1])]))) or 1.0

@@ -12,11 +12,11 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.elements.strain import law_reserve
-from flexstage.models.nonlinear.equilibrium import LESS, State, equilibrium, require_equilibrium, state, why_without
+from flexstage.models.nonlinear.equilibrium import LESS, State, equilibrium, failure_reason, require_equilibrium, state
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.newton import Task
-from flexstage.models.nonlinear.paths.arc import Course, Point, first_point, load_rate
-from flexstage.models.nonlinear.paths.follow import NEAR, VANISHED, Followed, continued, follow_to_event
+from flexstage.models.nonlinear.paths.arc import Point, ProportionalLoading, first_point, load_rate
+from flexstage.models.nonlinear.paths.follow import NEAR, VANISHED, FollowedPath, continued, follow_to_event
 from flexstage.models.nonlinear.paths.inertia import count_descents, kept_rows, lowest_stiffness, weakest_flexure
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import STATED, WEIGHT, Loads, SolverOptions, Status
@@ -29,7 +29,7 @@ _EQUAL = 1e-3
 """Relative difference of shape components that is zero."""
 
 
-class NothingGivesWayError(DesignError):
+class NoCriticalLoadError(DesignError):
     """No critical load up to the maximum factor."""
 
 
@@ -88,8 +88,8 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     """Compute the critical load: the factor on `load` at which equilibrium becomes unstable, with all other loads constant.
 
     The other loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can be part of
-    `load`: their values then grow. `weight` in `load` is the weight of the stage (as a load only if the argument `weight` is zero), and
-    `stated forces` are the forces and preloads of the description, likewise.
+    `load`: their values then grow. `weight` in `load` is the weight of the stage, as a load only if the argument `weight` is zero. `stated
+    forces` are the forces and preloads of the description, likewise.
 
     Other coordinates in `hold` keep their values; those that are not `locked` (absent: all are) count as free under their reactions.
 
@@ -99,7 +99,7 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     It raises:
 
     - `DesignError` for a zero load, and for a stage that is unstable at the start;
-    - `NothingGivesWayError` if no stiffness is zero up to `most` times the load;
+    - `NoCriticalLoadError` if no stiffness is zero up to `most` times the load;
     - `LowerBoundError` if the path ends earlier: at the end of the range of a law (`strain.law_reserve`), or without a further equilibrium.
     """
     if not any(load.values()):
@@ -108,16 +108,16 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     low = 0.0 if known is None else 1.0
     start = _at(model, load, low, rest=rest or {}, hold=hold or {}, shares=(weight, stated), start=known)
     require_equilibrium(start)
-    course = course_of(start, load, low, NEAR, locked=locked)
-    begin = first_point(course, start.pose, low)
+    loading = proportional_loading(start, load, low, NEAR, locked=locked)
+    begin = first_point(loading, start.pose, low)
     if begin.motions:
         under = "with" if low else "without"
         raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Check its weight and its specified forces")
-    followed = follow_to_event(course, begin, most, tolerance, reserve=lambda point: law_reserve(state_at(course, point, ())))
+    followed = follow_to_event(loading, begin, most, tolerance, reserve=lambda point: law_reserve(state_at(loading, point, ())))
     if followed.event is None or followed.factor > most:
         what = f"no critical point up to {most:g} times the load"
-        raise NothingGivesWayError([Finding("load", what, "Name a larger load, or another one")])
-    return _critical(course, followed, start.held)
+        raise NoCriticalLoadError([Finding("load", what, "Name a larger load, or another one")])
+    return _critical(loading, followed, start.held)
 
 
 def _at(
@@ -141,20 +141,20 @@ def _at(
 def require_continuation(start: State, end: State) -> None:
     """Refuse a stable state that is not the continuation of another one, as loads and fixed coordinates change in proportion.
 
-    Raises `DesignError` at the load of the first limit point or bifurcation on the path, at the end of the path, and if the path leads to
-    another equilibrium. An unstable state, or one whose path starts unstable, is accepted.
+    Raises `DesignError` at the first limit point or bifurcation, at the end of the path, and for a path to another equilibrium. An unstable
+    state, or one whose path starts unstable, is accepted.
     """
     one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
     continuation = continued(one, other)
     if continuation.status[0] != Status.CONVERGED:
-        raise refuse("stage", why_without(int(continuation.status[0]), float(continuation.reached[0])), LESS)
+        raise refuse("stage", failure_reason(int(continuation.status[0]), float(continuation.reached[0])), LESS)
     if continuation.pose is not end.pose:
         raise refuse("stage", "the equilibrium under its loads is not the continuation of the unloaded stage", LESS)
 
 
-def course_of(
+def proportional_loading(
     start: State, load: Mapping[str, float], factor: float, options: SolverOptions, *, locked: Sequence[str] | None = None
-) -> Course:
+) -> ProportionalLoading:
     """Build the load path of a load that is proportional to a factor, from a state at a given factor."""
     model = start.model
     rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
@@ -162,39 +162,39 @@ def course_of(
     begun = Loads(*(getattr(start.loads, name) - factor * getattr(gain, name) for name in ("inputs", "gravity", "constant")))
     moved = np.array([[load.get(name, 0.0) for name in start.held]])
     kept = kept_rows(model, start.held, start.held if locked is None else locked)
-    return Course(model, begun, replace(start.hold, value=start.hold.value - factor * moved), gain, moved, options, kept)
+    return ProportionalLoading(model, begun, replace(start.hold, value=start.hold.value - factor * moved), gain, moved, options, kept)
 
 
-def state_at(course: Course, point: Point, held: tuple[str, ...]) -> State:
+def state_at(loading: ProportionalLoading, point: Point, held: tuple[str, ...]) -> State:
     """Build the state at a point of a load path."""
-    return state(course.model, *course.at(point.factor), point.found, ((), held))
+    return state(loading.model, *loading.at(point.factor), point.found, ((), held))
 
 
-def _critical(course: Course, followed: Followed, held: tuple[str, ...]) -> Critical:
+def _critical(loading: ProportionalLoading, followed: FollowedPath, held: tuple[str, ...]) -> Critical:
     """The critical point at a zero stiffness: a limit point if the load does work on its motion."""
-    model, event = course.model, followed.event
+    model, event = loading.model, followed.event
     assert event is not None  # noqa: S101
     assert event.reference is not None  # noqa: S101
     scale = event.reference.scale
-    value, motion = lowest_stiffness(model, event.system, course.kept, scale)
+    value, motion = lowest_stiffness(model, event.system, loading.kept, scale)
     own, link = weakest_flexure(model, event.system)
     inside = abs(own) < VANISHED * event.reference.flexure
-    force = _force_rate(course, event)
+    force = _force_rate(loading, event)
     work = abs(force @ motion) / (np.linalg.norm(force / scale) * np.linalg.norm(motion * scale))
     apart = inside and abs(value) > VANISHED * event.reference.stage
     kind = Kind.LIMIT if work > _SEEN and not apart else Kind.BIFURCATION
-    sizes = course.scale[: model.freedoms] * motion
+    sizes = loading.scale[: model.freedoms] * motion
     first = np.argmax(np.abs(sizes) > (1.0 - _EQUAL) * np.max(np.abs(sizes)))
     motion = np.copysign(1.0, sizes[first]) * motion
-    last = state_at(course, followed.last, held)
+    last = state_at(loading, followed.last, held)
     return Critical(followed.factor, model.bodies, motion.reshape(-1, 6), kind, link if inside else "", last, followed.bend)
 
 
-def _force_rate(course: Course, event: Point) -> Array:
+def _force_rate(loading: ProportionalLoading, event: Point) -> Array:
     """Derivative (n,) of body forces by the factor; prescribed coordinates that change with it move only their bodies."""
-    count, matrix = course.model.freedoms, event.system.matrix[0]
-    rate = load_rate(course, event.found.pose, event.factor, event.system)
-    if not np.any(course.moved):
+    count, matrix = loading.model.freedoms, event.system.matrix[0]
+    rate = load_rate(loading, event.found.pose, event.factor, event.system)
+    if not np.any(loading.moved):
         return rate[:count]
     held = matrix[count:, :count]
     moved = np.linalg.lstsq(held if isinstance(held, np.ndarray) else held.toarray(), rate[count:])[0]

@@ -11,8 +11,8 @@ import scipy
 
 from flexstage.base.finding import Finding, LowerBoundError
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.newton import USUAL, Found, Task, search
-from flexstage.models.nonlinear.paths.arc import Course, Point, first_point, march, misfit, point_at, step_along
+from flexstage.models.nonlinear.newton import USUAL, EquilibriumSolution, Task, search
+from flexstage.models.nonlinear.paths.arc import Point, ProportionalLoading, first_point, march, misfit, point_at, step_along
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.spatial.rotation import logarithm
@@ -39,7 +39,7 @@ Reserve = Callable[[Point], tuple[float, str]]
 
 
 @dataclass(frozen=True, eq=False)
-class Followed:
+class FollowedPath:
     """A path from its start: last stable point, first critical point if any, and factors of its bend and of its end."""
 
     last: Point
@@ -49,8 +49,8 @@ class Followed:
 
 
 def follow_to_event(
-    course: Course, begin: Point, most: float, tolerance: float, *, length: float = FIRST, reserve: Reserve | None = None
-) -> Followed:
+    loading: ProportionalLoading, begin: Point, most: float, tolerance: float, *, length: float = FIRST, reserve: Reserve | None = None
+) -> FollowedPath:
     """Follow a path to the first zero of its stiffness, or to the factor `most`; its first step has a `length`.
 
     Raises `LowerBoundError` if the path ends earlier: without an equilibrium or, with a `reserve`, at its zero and well beyond an imperfect
@@ -58,46 +58,46 @@ def follow_to_event(
     """
     last, bent = begin, None
     for _ in range(_JUMPS):
-        for point in itertools.islice(march(course, last, length), _POINTS):
+        for point in itertools.islice(march(loading, last, length), _POINTS):
             length = 0.1 * float(np.linalg.norm(point.step))
             if point.motions:
-                event = _first_event(course, last, point, bent, tolerance)
+                event = _first_event(loading, last, point, bent, tolerance)
                 if event is None:
                     break  # the step changed to another path
-                _require_lawful(course, event.event or point, last, bent, reserve)
+                _require_lawful(loading, event.event or point, last, bent, reserve)
                 if event.factor <= most:
                     return event
-                return replace(event, last=_zero(course, last, event.event or point, lambda each: each.factor - most, 1e-6) or last)
-            _require_lawful(course, point, last, bent, reserve)
+                return replace(event, last=_zero(loading, last, event.event or point, lambda each: each.factor - most, 1e-6) or last)
+            _require_lawful(loading, point, last, bent, reserve)
             if bent is None and _excess(point) < 0.0:
-                bent = _zero(course, last, point, _excess, 1e-4) or point
+                bent = _zero(loading, last, point, _excess, 1e-4) or point
             last = point
             if reserve is not None:
                 _require_unbent(last, bent, most)
             if last.factor >= most:
-                return Followed(last, None, _bend(bent, last), last.factor)
+                return FollowedPath(last, None, _bend(bent, last), last.factor)
         else:
             break
     if abs(last.stiffness) < VANISHED:  # Newton's method has no solution at a zero own stiffness of a flexure
-        return Followed(last, last, _bend(bent, last), last.factor)
+        return FollowedPath(last, last, _bend(bent, last), last.factor)
     raise _not_followed(last, "no equilibrium next to the last one", None if reserve is None else bent)
 
 
-def _first_event(course: Course, last: Point, point: Point, bent: Point | None, tolerance: float) -> Followed | None:
+def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: Point | None, tolerance: float) -> FollowedPath | None:
     """The critical point between a stable and an unstable point; `None` if no stiffness is zero between them."""
-    event = _zero(course, last, point, _stiffness, tolerance)
+    event = _zero(loading, last, point, _stiffness, tolerance)
     if event is None or abs(event.stiffness) > VANISHED:
         return None
     length = float(np.linalg.norm(event.step))
-    before = step_along(course, last, (1.0 - _NEXT) * length) if event.motions else None
+    before = step_along(loading, last, (1.0 - _NEXT) * length) if event.motions else None
     if before is None or before.motions or abs(before.factor - event.factor) > _ROUND * abs(event.factor):
         before = event
     slope = float(np.nan_to_num(event.slope))  # exactly singular: no residual stiffness
     factor = event.factor + slope * length * event.stiffness / (last.stiffness - event.stiffness)
-    return Followed(before, event, _bend(bent, event), factor)
+    return FollowedPath(before, event, _bend(bent, event), factor)
 
 
-def continued(start: Task, end: Task) -> Found:
+def continued(start: Task, end: Task) -> EquilibriumSolution:
     """Compute the equilibrium (of one case) that continues `start` as loads and fixed coordinates grow in proportion to `end`.
 
     An equilibrium `end` is returned unchanged if it is next to the start, or if its path starts unstable. So is an unstable one whose path
@@ -107,24 +107,24 @@ def continued(start: Task, end: Task) -> Found:
     fraction `reached`.
     """
     model, hold = end.model, end.hold
-    whole = Found(end.start, np.array([Status.CONVERGED]), np.zeros(1, int), np.zeros(1), np.ones(1))
+    whole = EquilibriumSolution(end.start, np.array([Status.CONVERGED]), np.zeros(1, int), np.zeros(1), np.ones(1))
     kept = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
-    if apart(model, start.start, end.start) < _SAME:
+    if pose_distance(model, start.start, end.start) < _SAME:
         return whole
     gain = Loads(*(getattr(end.loads, name) - getattr(start.loads, name) for name in ("inputs", "gravity", "constant")))
-    course = Course(model, start.loads, start.hold, gain, hold.value - start.hold.value, NEAR, kept)
-    begin = first_point(course, start.start, 0.0)
+    loading = ProportionalLoading(model, start.loads, start.hold, gain, hold.value - start.hold.value, NEAR, kept)
+    begin = first_point(loading, start.start, 0.0)
     if begin.motions or not np.isfinite(begin.slope):
         return whole
-    after = point_at(course, whole, 1.0, step=course.scale * between(start.start, end.start), start=begin)
-    if not after.motions and misfit(course.scale, None, begin, after) <= 1.0:  # one step of `march` would end there
+    after = point_at(loading, whole, 1.0, step=loading.scale * between(start.start, end.start), start=begin)
+    if not after.motions and misfit(loading.scale, None, begin, after) <= 1.0:  # one step of `march` would end there
         return whole
 
-    def lost(status: Status, reached: float) -> Found:
+    def lost(status: Status, reached: float) -> EquilibriumSolution:
         return replace(whole, status=np.array([status]), reached=np.array([reached]))
 
     try:
-        followed = follow_to_event(course, begin, 1.0, 1e-6, length=1.0 / begin.slope)
+        followed = follow_to_event(loading, begin, 1.0, 1e-6, length=1.0 / begin.slope)
     except LowerBoundError as error:
         return lost(Status.NOT_FOLLOWED, error.bound)
     if followed.event is not None and followed.factor <= 1.0:
@@ -132,19 +132,19 @@ def continued(start: Task, end: Task) -> Found:
     if after.motions and followed.bend:
         return whole
     solution = search(model, followed.last.found.pose, end.loads, hold, USUAL)
-    return whole if solution.status[0] == Status.CONVERGED and apart(model, solution.pose, end.start) < _SAME else solution
+    return whole if solution.status[0] == Status.CONVERGED and pose_distance(model, solution.pose, end.start) < _SAME else solution
 
 
-def apart(model: Nonlinear, one: Pose, other: Pose) -> float:
+def pose_distance(model: Nonlinear, one: Pose, other: Pose) -> float:
     """Return the distance of bodies from another pose, over the stage size and in radians."""
-    moved = np.max(np.abs(one.position - other.position)) / model.size
-    return float(max(moved, np.max(np.abs(one.turn - other.turn))))
+    shift = np.max(np.abs(one.position - other.position)) / model.size
+    return float(max(shift, np.max(np.abs(one.turn - other.turn))))
 
 
 def between(one: Pose, other: Pose) -> Array:
     """Return the body motion (n,) from one pose to another, without reactions."""
-    moved = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
-    return np.append(moved[0, :-1], np.zeros(other.held.shape[1]))
+    motions = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
+    return np.append(motions[0, :-1], np.zeros(other.held.shape[1]))
 
 
 def _stiffness(point: Point) -> float:
@@ -156,13 +156,13 @@ def _excess(point: Point) -> float:
     return point.slope / point.steepest - _FLAT
 
 
-def _require_lawful(course: Course, point: Point, last: Point, bent: Point | None, reserve: Reserve | None) -> None:
+def _require_lawful(loading: ProportionalLoading, point: Point, last: Point, bent: Point | None, reserve: Reserve | None) -> None:
     """Refuse a point beyond the range of the laws."""
     if reserve is None:
         return
     left, why = reserve(point)
     if left < 0.0:
-        raise _not_followed(_zero(course, last, point, lambda each: reserve(each)[0], 1e-4) or last, why, bent)
+        raise _not_followed(_zero(loading, last, point, lambda each: reserve(each)[0], 1e-4) or last, why, bent)
 
 
 def _require_unbent(last: Point, bent: Point | None, most: float) -> None:
@@ -185,7 +185,7 @@ def _bend(bent: Point | None, last: Point) -> float | None:
     return None if bent is None or last.factor < _SOON * bent.factor else bent.factor
 
 
-def _zero(course: Course, last: Point, after: Point, measure: Callable[[Point], float], tolerance: float) -> Point | None:
+def _zero(loading: ProportionalLoading, last: Point, after: Point, measure: Callable[[Point], float], tolerance: float) -> Point | None:
     """The point between two at which a measure of points changes sign; `None` without an equilibrium between them."""
     length = float(np.linalg.norm(after.step))
 
@@ -193,7 +193,7 @@ def _zero(course: Course, last: Point, after: Point, measure: Callable[[Point], 
         if part in (0.0, length):
             return after if part else last
         for share in _BESIDE:  # Newton's method has no solution at zero stiffness
-            point = step_along(course, last, share * part)
+            point = step_along(loading, last, share * part)
             if point is not None:
                 return point
         raise ValueError

@@ -15,8 +15,8 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium, require_equilibrium, state
 from flexstage.models.nonlinear.newton import USUAL, Task, join
-from flexstage.models.nonlinear.paths.arc import Course, Point, critical_point, first_point, follow_course
-from flexstage.models.nonlinear.paths.critical_load import Critical, Kind, course_of, critical_load, unstable_motions
+from flexstage.models.nonlinear.paths.arc import Point, ProportionalLoading, continue_path, critical_point, first_point
+from flexstage.models.nonlinear.paths.critical_load import Critical, Kind, critical_load, proportional_loading, unstable_motions
 from flexstage.models.nonlinear.paths.follow import continued
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, SolverOptions, Status
@@ -231,9 +231,9 @@ def continuation(
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
         raise refuse(", ".join(unknown) or "load", "not a load of this stage, or zero", "Name a force, moment or stroke and its size")
-    course = course_of(start, load, 0.0, options)
-    begin = first_point(course, start.pose, 0.0)
-    return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
+    loading = proportional_loading(start, load, 0.0, options)
+    begin = first_point(loading, start.pose, 0.0)
+    return _along(loading, [begin, *continue_path(loading, begin, step, points)], start.held)
 
 
 @check_arguments
@@ -253,8 +253,8 @@ def post_buckling_path(
     The first state is the last stable one before the bifurcation. The next is in the direction of the buckling mode or, with `side` -1,
     opposite to it (the sign of `Critical.shape`). Steps and points are as in `continuation`.
 
-    Raises `DesignError` as `critical_load` does; at a limit point, which `continuation` passes; for a flexure that buckles between fixed
-    ends; and without an equilibrium on the branch.
+    Raises `DesignError` as `critical_load` does, at a limit point (which `continuation` passes), for a flexure that buckles between fixed
+    ends, and without an equilibrium on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -300,24 +300,24 @@ def beyond(
         raise refuse(
             critical.link, f"{what} the flexure buckles between fixed ends", "Model it as two parts with a light body between them"
         )
-    course, into = course_of(start, load, critical.factor, options), None
+    loading, into = proportional_loading(start, load, critical.factor, options), None
     if critical.kind is Kind.BIFURCATION:
-        others = np.zeros(len(course.scale) - start.model.freedoms)
+        others = np.zeros(len(loading.scale) - start.model.freedoms)
         into = np.concatenate([np.sign(side) * np.ravel(critical.shape), others])
-    begin = critical_point(course, start.pose, critical.factor, into)
-    path = [begin, *follow_course(course, begin, step, points)]
+    begin = critical_point(loading, start.pose, critical.factor, into)
+    path = [begin, *continue_path(loading, begin, step, points)]
     if len(path) == 1:
         raise refuse("load", f"no equilibrium beyond the critical point {what}", "Use a smaller step")
-    return _along(course, path, start.held)
+    return _along(loading, path, start.held)
 
 
-def _along(course: Course, path: list[Point], held: tuple[str, ...]) -> LoadPath:
+def _along(loading: ProportionalLoading, path: list[Point], held: tuple[str, ...]) -> LoadPath:
     factors, count = np.array([each.factor for each in path]), len(path)
-    loads, hold = course.at(0.0)
-    inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(course.gain, name) for name in ("inputs", "gravity"))
-    along = Loads(inputs, gravity, loads.constant + factors * course.gain.constant)
+    loads, hold = loading.at(0.0)
+    inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(loading.gain, name) for name in ("inputs", "gravity"))
+    along = Loads(inputs, gravity, loads.constant + factors * loading.gain.constant)
     whole = join([each.found for each in path])
-    states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
+    states = state(loading.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
     motions = np.array([each.motions for each in path])
     return LoadPath("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(path)]))
 

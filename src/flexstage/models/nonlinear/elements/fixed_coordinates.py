@@ -14,7 +14,7 @@ _STEP = 1e-30
 
 
 @dataclass(frozen=True, eq=False)
-class Hold:
+class FixedCoordinates:
     """Fixed coordinates: of bodies by number (h,), at nominal arms (h, 3), `component` (h,) 0 to 5, at `value` (b, h) [m, rad].
 
     A translation is the displacement of the point, a rotation a component of the rotation vector log R; its reaction is the moment T^-T e.
@@ -29,24 +29,24 @@ class Hold:
     origin: Array
     value: Array
 
-    def of(self, cases: Array) -> Hold:
+    def of(self, cases: Array) -> FixedCoordinates:
         """Select cases."""
-        return Hold(self.body, self.arm, self.component, self.origin, self.value[cases])
+        return FixedCoordinates(self.body, self.arm, self.component, self.origin, self.value[cases])
 
 
-def nothing(cases: int) -> Hold:
+def no_coordinates(cases: int) -> FixedCoordinates:
     """Return an empty set of fixed coordinates."""
     none = np.zeros(0, dtype=int)
-    return Hold(none, np.zeros((0, 3)), none, np.zeros((0, 3)), np.zeros((cases, 0)))
+    return FixedCoordinates(none, np.zeros((0, 3)), none, np.zeros((0, 3)), np.zeros((cases, 0)))
 
 
-def values(hold: Hold, place: int, pose: Pose) -> Array:
+def values(hold: FixedCoordinates, place: int, pose: Pose) -> Array:
     """Compute the value (b,) of a fixed coordinate at a pose."""
     body = hold.body[place]
     return _coordinate(hold, place, pose.position[:, body], pose.turn[:, body])[0]
 
 
-def gradients(hold: Hold, place: int, pose: Pose) -> tuple[Array, Array, Array]:
+def gradients(hold: FixedCoordinates, place: int, pose: Pose) -> tuple[Array, Array, Array]:
     """Compute value (b,), gradient (b, 6) by the body motion and second derivative (b, 6, 6) of a fixed coordinate, by complex steps."""
     position, turn = pose.position[:, hold.body[place]], pose.turn[:, hold.body[place]]
     value, along = _coordinate(hold, place, position, turn)
@@ -55,7 +55,7 @@ def gradients(hold: Hold, place: int, pose: Pose) -> tuple[Array, Array, Array]:
     return value, along, np.moveaxis(np.imag(stepped), 0, -1) / _STEP
 
 
-def _coordinate(hold: Hold, place: int, position: Array, turn: Array) -> tuple[Array, Array]:
+def _coordinate(hold: FixedCoordinates, place: int, position: Array, turn: Array) -> tuple[Array, Array]:
     component = int(hold.component[place])
     if component > 2:
         angle = logarithm(turn)

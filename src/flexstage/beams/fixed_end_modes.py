@@ -72,7 +72,7 @@ class Torsion:
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class FixedEndModes:
     """Modes of unit modal mass: squared angular frequencies `squares` (..., n) [1/s^2], displacement and rotation of sections (..., n, s).
 
     `axis`: 1 and 2 for deflections along y and z, with the section rotation dw/dx; 3 for twist about x, without it.
@@ -84,13 +84,13 @@ class Held:
     turned: Array | None = None
 
 
-def held_bending(axis: int, part: Bending, count: int, stations: Array) -> Held:
+def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> FixedEndModes:
     """Compute the first `count` fixed-end bending modes along y or z (`axis` 1, 2), at stations (s,) from -1 to 1 over the half length.
 
     Compared with Euler's clamped-clamped beam, whose frequencies are 22.3733, 61.6728, 120.903 times (E I / (rho A L^4))^(1/2):
 
     >>> slender = Bending(length=1.0, rigidity=1.0, shear=1e9, mass=1.0, rotary=0.0)
-    >>> (held_bending(1, slender, 3, np.zeros(1)).squares ** 0.5).round(3).tolist()
+    >>> (fixed_end_bending(1, slender, 3, np.zeros(1)).squares ** 0.5).round(3).tolist()
     [22.373, 61.673, 120.903]
     """
     size = count + _MORE
@@ -116,11 +116,11 @@ def held_bending(axis: int, part: Bending, count: int, stations: Array) -> Held:
     return _signed(axis, squares, deflection, rotation, _transpose(vectors[..., :size, :]) @ plain.at(np.array([_FIRST_LOBE])))
 
 
-def held_twist(part: Torsion, count: int, stations: Array) -> Held:
+def fixed_end_twist(part: Torsion, count: int, stations: Array) -> FixedEndModes:
     """Compute the first `count` fixed-end twist modes, at stations (s,) from -1 to 1 over the half length.
 
     >>> rod = Torsion(length=1.0, rigidity=1.0, inertia=1.0)
-    >>> (held_twist(rod, 3, np.zeros(1)).squares ** 0.5 / np.pi).round(9).tolist()
+    >>> (fixed_end_twist(rod, 3, np.zeros(1)).squares ** 0.5 / np.pi).round(9).tolist()
     [1.0, 2.0, 3.0]
     """
     size = count + _MORE
@@ -204,9 +204,9 @@ def join(arrays: Iterable[Array]) -> Array:
     return np.concatenate([np.broadcast_to(each, (*batch, each.shape[-1])) for each in parts], axis=-1)
 
 
-def _signed(axis: int, squares: Array, moved: Array, turned: Array | None, first: Array) -> Held:
+def _signed(axis: int, squares: Array, moved: Array, turned: Array | None, first: Array) -> FixedEndModes:
     sign = np.where(np.real(first) < 0.0, -1.0, 1.0)
-    return Held(axis, squares, sign * moved, None if turned is None else sign * turned)
+    return FixedEndModes(axis, squares, sign * moved, None if turned is None else sign * turned)
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,7 +268,7 @@ def _modes(stiffness: Array, inertia: Array, count: int) -> tuple[Array, Array]:
 
 
 def _stepped(stiff: Array, heavy: Array, values: Array, vectors: Array) -> tuple[Array, Array]:
-    """Eigenpairs M v = mu K v, v^T K v = 1, to first order in the imaginary parts of K and M, by a bordered system per mode."""
+    """Eigenpairs M v = mu K v to first order in the imaginary parts of K and M, by a bordered system per mode."""
     steps, turns = [], []
     for number in range(values.shape[-1]):
         value, vector = values[..., number, None, None], vectors[..., number : number + 1]

@@ -7,13 +7,13 @@ from flexstage.beams.law import PartLaw
 from flexstage.parts.compliance_matrix import ComplianceMatrix
 
 
-def given_compliance(part: ComplianceMatrix) -> Array:
+def specified_compliance(part: ComplianceMatrix) -> Array:
     """Return the specified compliance (..., 6, 6) about the centre.
 
-    >>> given_compliance(ComplianceMatrix(tuple(tuple(float(i == j) for j in range(6)) for i in range(6)), free=())).trace()
+    >>> specified_compliance(ComplianceMatrix(tuple(tuple(float(i == j) for j in range(6)) for i in range(6)), free=())).trace()
     np.float64(6.0)
     """
     return stack(part.compliance)
 
 
-GIVEN = PartLaw(compliance=given_compliance, mass=lambda part: part.carried)
+MATRIX = PartLaw(compliance=specified_compliance, mass=lambda part: part.carried)
