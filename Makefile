@@ -86,5 +86,5 @@ web-types:
 
 lock: setup-dev ## pin the requirements anew (newer versions: make lock UPGRADE=--upgrade)
 	$(COMPILE) $(UPGRADE) pyproject.toml requirements/build.in --extra dev -o requirements/dev.txt
-	$(COMPILE) pyproject.toml requirements/build.in --extra cluster --extra control --extra solid --extra tables -c requirements/dev.txt -o requirements/runtime.txt
+	$(COMPILE) pyproject.toml requirements/build.in --extra control --extra solid --extra tables -c requirements/dev.txt -o requirements/runtime.txt
 	$(COMPILE) pyproject.toml --extra oracles -c requirements/dev.txt -o requirements/oracles.txt

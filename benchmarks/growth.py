@@ -1,6 +1,6 @@
-"""How cost grows: with bodies, designs, samples, hinges as solids and workers of a cluster; a process each size, seconds and memory.
+"""How cost grows: with bodies, designs, samples and hinges as solids; a process each size, seconds and memory.
 
-    python benchmarks/growth.py [bodies | trees | designs | samples | hinges | workers] [SIZES ...] [--printed FILE] [--figure FILE]
+    python benchmarks/growth.py [bodies | trees | designs | samples | hinges] [SIZES ...] [--printed FILE] [--figure FILE]
 
 Bodies: models, statics, modes and drift of coiled chains; trees: the same of bodies that branch in two. What bounds each: expanding the
 description and the links' operators grow with the bodies; the factor of the stiffness hardly does in chains and trees; the modes take some
@@ -9,7 +9,6 @@ Designs: six platform frequencies of the shipped stage over four numbers, featur
 writes it.
 Samples: spectra of one drive and one reading, taken from a source that makes them as they are asked for, in segments of a second.
 Hinges: the 6x6 of so many notches by finite elements to 1 %, all of another thickness, none from a cache.
-Workers: a sweep of 200,000 designs of the shipped stage by a Dask cluster of so many processes on this machine.
 
 Seconds are those of the processor, all processes together, and in the last column but one those that went by; memory is that of the largest
 process. `--figure` draws them, of what runs and of what `--printed` holds from earlier.
@@ -27,7 +26,6 @@ import re
 import resource
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -39,7 +37,6 @@ SIZES = {
     "designs": (10**3, 10**4, 10**5, 10**6, 10**7),
     "samples": (10**4, 10**5, 10**6, 10**7, 10**8),
     "hinges": (1, 3, 10, 30, 100),
-    "workers": (1, 2, 4, 8),
 }
 _OF_BODIES = ("describe", "lumped", "statics", "modes", "drift", "ideal")
 STEPS = {
@@ -48,10 +45,9 @@ STEPS = {
     "designs": ("fit", "solve"),
     "samples": ("open", "spectra"),
     "hinges": ("describe", "solve"),
-    "workers": ("study", "sweep"),
 }
 NUMBERS = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "placements.B1-B3.pattern.radius")
-PORTION, RATE, SWEPT = 100_000, 10_000.0, 200_000
+PORTION, RATE = 100_000, 10_000.0
 
 
 def chain(count: int) -> object:
@@ -183,35 +179,12 @@ def hinges(count: int) -> Iterator[None]:
     yield
 
 
-def workers(count: int) -> Iterator[None]:
-    """A sweep over four numbers by a cluster; its processes are started and ended with it."""
-    from distributed import LocalCluster
-
-    from flexstage.studies.sweeps.execution.run import Run, sweep
-    from flexstage.studies.sweeps.file import loads_study
-
-    variables = "".join(f'v{place} = {{ address = "{name}", from = "-5 %", to = "+5 %" }}\n' for place, name in enumerate(NUMBERS))
-    responses = "".join(f'f{number} = "frequency.platform.{number}"\n' for number in range(1, 7))
-    study = loads_study(
-        f'format = "flexstage study 1"\nname = "growth"\ncase = "double-triangle"\n'
-        f'sweep = {{ sampling = "latin hypercube", designs = {SWEPT}, seed = 1 }}\n[variables]\n{variables}[responses]\n{responses}'
-    )
-    yield
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
-    ):
-        sweep(study, f"{folder}/results.h5", Run(scheduler=cluster.scheduler_address))
-    yield
-
-
 OF: dict[str, Callable[[int], Iterator[None]]] = {
     "bodies": bodies,
     "trees": trees,
     "designs": designs,
     "samples": samples,
     "hinges": hinges,
-    "workers": workers,
 }
 
 
@@ -257,7 +230,7 @@ def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None
             if place == 2:
                 axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))  # little more than a decade
         figure.legend(*axis.get_legend_handles_labels(), loc="outside right upper")
-    svg = to_svg(figure, "growth", "processor time and memory over the number of bodies, designs, samples, hinges and workers")
+    svg = to_svg(figure, "growth", "processor time and memory over the number of bodies, designs, samples and hinges")
     Path(file).write_text(re.sub(r"var\([^,]*, *([^)]*)\)", r"\1", svg).replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))
 
 
@@ -276,7 +249,7 @@ def read_printed(lines: Iterable[str]) -> dict[str, list[tuple[float, float, flo
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("words", nargs="*", help="bodies, trees, designs, samples, hinges or workers; sizes")
+    parser.add_argument("words", nargs="*", help="bodies, trees, designs, samples or hinges; sizes")
     parser.add_argument("--printed")
     parser.add_argument("--figure")
     asked = parser.parse_args()

@@ -47,7 +47,6 @@ def told(name: str, order: int, folder: Path) -> tuple[float, float, list[tuple[
         ways = Ways(Cache(folder), step, pool=pool)
         plan = verification_plan(stage, asked, ways)
         print(plan)
-        shown.follow([plan.together], plan.lanes)
         begun, said[:] = time.monotonic(), []
         work_ahead(plan, ways)
         verify(stage, asked, solids(ways), hinges(0.01, order, ways))

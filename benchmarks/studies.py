@@ -36,9 +36,8 @@ from flexstage.models.batch.engine import platform_modes
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.execution.engine import Engine, engine_of
 from flexstage.studies.sweeps.execution.evaluate import piece
-from flexstage.studies.sweeps.execution.gather import gather
 from flexstage.studies.sweeps.execution.run import piece_size
-from flexstage.studies.sweeps.execution.store import done_pieces, folder_of, read_results, write_piece
+from flexstage.studies.sweeps.execution.store import folder_of, gather, read_results, write_piece
 from flexstage.studies.sweeps.file import load_study
 
 STUDY = """
@@ -207,7 +206,7 @@ def report(study: Study, place: Path, kills: int, workers: int) -> None:
         last = sweep(place / "study.toml", broken, workers)
         code = last.wait()
     same = code == 0 and broken.read_bytes() == bytes_before == whole.read_bytes()
-    every = bool(done_pieces(broken, piece_size(study), designs).all()) and len(read_results(broken).designs) == designs
+    every = bool(gather(broken, study, piece_size(study)).all()) and len(read_results(broken).designs) == designs
     print(f"  kills survived          {survived:9d} of {kills}, in {time.monotonic() - start:.0f} s")
     print(f"  opened while it ran     {told.opened:9d} times, {len(told.wrong)} of them wrong {told.wrong[:3] or ''}")
     print(f"  every design once       {'yes' if every else 'NO':>9}; the same bytes as unbroken: {'yes' if same else 'NO'}")

@@ -118,7 +118,7 @@ def child(how: str, folder: Path) -> None:
     from flexstage.cases.double_triangle import double_triangle
     from flexstage.solid.fea.jobs.cache import Cache
     from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
-    from flexstage.solid.fea.solver.model import model as solid
+    from flexstage.solid.results.read import model as solid
     from tests.models.monolithic import monolithic
 
     told = [(0.0, "")]

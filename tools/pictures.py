@@ -62,10 +62,10 @@ from flexstage.studies.sweeps.effects import effects as effects_of
 from flexstage.studies.sweeps.execution.run import Run, sweep
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.sweeps.show.figures import effects_figure
-from flexstage.studies.sweeps.show.interaction_figures import pairs_figure, strongest_figure
+from flexstage.studies.sweeps.show.interaction_figures import strongest_figure
 from flexstage.studies.tolerances.file import loads_tolerance
 from flexstage.studies.tolerances.run import Toleranced, tolerance
-from flexstage.studies.tolerances.show.figures import crosstalk_figure, distributions_figure
+from flexstage.studies.tolerances.show.figures import distributions_figure
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.closed_forms import (
     paros_weisbord_rotation_simplified,
@@ -216,6 +216,16 @@ def plan() -> Any:
     return plan_figure(mechanism, still_data(mechanism))
 
 
+def xy_plan() -> Any:
+    """The dimensioned plan of the stage in docs/blank-sheet.md."""
+    with TemporaryDirectory() as place:
+        for block in blocks("docs/blank-sheet.md"):
+            if (name := block.word("file")) is not None:
+                Path(place, name).write_text(block.text, encoding="utf-8")
+        mechanism = fs.load(Path(place, "third.toml"))
+    return plan_figure(mechanism, still_data(mechanism))
+
+
 def polar() -> Any:
     """Stiffness in the plane by direction."""
     return directional_figure(fs.statics(fs.lumped(double_triangle())))
@@ -346,11 +356,6 @@ def effects() -> Any:
     return effects_figure(*_study("study.toml"))
 
 
-def pairs() -> Any:
-    """What pairs of variables do together."""
-    return pairs_figure(_study("arms.toml")[1])
-
-
 def strongest() -> Any:
     """How the strongest pairs act."""
     return strongest_figure(*_study("arms.toml"))
@@ -372,11 +377,6 @@ def _made() -> Toleranced:
 def made() -> Any:
     """What copies of the shipped stage do, against their limits."""
     return distributions_figure(_made())
-
-
-def crosstalk() -> Any:
-    """Crosstalk of these copies, commanded by the drawn stage's mapping."""
-    return crosstalk_figure(_made().summary.crosstalk[0])
 
 
 @cache
@@ -424,6 +424,7 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "six-by-six": (six_by_six, "compliance of a leaf: at its centre nearly diagonal, at its end with couplings of forces and rotations"),
     "margins": (margins, "a loop's curve in the complex plane, with its gain margin, its phase margin and its distance from -1"),
     "plan": (plan, "dimensioned plan of the double-triangular stage"),
+    "xy-plan": (xy_plan, "dimensioned plan of an XY stage with three piezo struts and three gauges"),
     "polar": (polar, "stiffness of the double-triangular stage in the plane by direction: circles"),
     "budget": (budget, "lost motion of the six actuators by hinge"),
     "modes": (modes, "shapes of the platform's six modes"),
@@ -431,9 +432,7 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "compared": (compared, "frequencies of six modes by theory and as measured, and how far theory is off"),
     "hysteresis": (hysteresis, "loops of a stack with the model over them, the model's error, and the volts of the inverse"),
     "tolerance": (made, "distributions of lost motion and frequency over copies of the stage, with limits"),
-    "crosstalk": (crosstalk, "pose errors per command of copies of the stage, as a matrix of means and deviations"),
     "effects": (effects, "mean frequency, lost motion and mass over the thickness of necks, plate and notch"),
-    "pairs": (pairs, "shares of variance of stroke and lost motion by the arm, the notch, and both together"),
     "strongest": (strongest, "lost motion over the arm, for thin and thick notches"),
     "optimum": (optimum, "the lowest frequency over accepted designs of three searches, and where each variable goes in its range"),
     "loop": (

@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 UV = str(Path(sys.executable).with_name("uv"))
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
-EXTRAS = ("tables", "control", "cluster")
+EXTRAS = ("tables", "control")
 _TOOLS = ("pytest", "hypothesis", "pyuff")
 _TESTS = (*(f"tests/roundtrip/test_{each}.py" for each in ("store", "units", "sheets", "records")), "tests/apps/test_outputs.py")
 """Files of all formats, and the outputs of commands."""

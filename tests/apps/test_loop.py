@@ -306,7 +306,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--feedforward", "everything"), ("--feedforward everything", "lost-motion, load, reference, hysteresis")),
     (("--feedforward", "hysteresis"), ("compensate", "the stacks have none")),
     (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "no such file")),
-    (("--hysteresis", "80 %"), ("hysteresis.width", "at most 0.5")),
+    (("--hysteresis", "80 %"), ("--hysteresis", "at most 0.5")),
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
     (
         ("--fea", "--at", "platform.x=1 mm", "--model", "mapped"),
@@ -314,7 +314,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     ),
     (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
     (("--controller", "pidd"), ("--controller", "pi, pid, resonant, lqg, none")),
-    (("--max-sensitivity", "0.9"), ("controller.sensitivity", "greater than 1")),
+    (("--max-sensitivity", "0.9"), ("--max-sensitivity", "greater than 1")),
     (("--seconds", "-1"), ("seconds", "greater than 0")),
     (("--seconds", "1e9"), ("seconds", "samples")),
     (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),

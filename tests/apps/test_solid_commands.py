@@ -83,7 +83,6 @@ def test_the_stage(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(resolution, "changes", lambda *_: {"mode 1": 0.3})
-    monkeypatch.setattr("flexstage.solid.commands.solid.retain", lambda *_: None)
     ended = command("verify", "stage.toml", *ROUGH, "--json", "v.json", "--report", "v.html")
     assert ended.code == 0, ended.err
     told = told_everywhere(ended, tmp_path / "v.json", tmp_path / "v.html")
@@ -98,18 +97,6 @@ def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.Monk
     assert "Which to trust" in ended.out
     assert "Theory and finite elements: stage" in ended.out
     assert "Theory and finite elements" in (tmp_path / "v.html").read_text(encoding="utf-8")
-
-
-def test_a_verification_that_is_known_is_told_again(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    first = command("verify", "stage.toml", *ROUGH, "--json", "first.json")
-    monkeypatch.setattr("flexstage.solid.results.verification.verify", lambda *_: pytest.fail("computed"))
-    again = command("verify", "stage.toml", *ROUGH, "--json", "again.json")
-    assert (again.code, again.out) == (0, first.out), again.err
-    assert again.err.startswith("to do: nothing, the verification is in the cache.\n")
-    assert Path("again.json").read_bytes() == Path("first.json").read_bytes()
-    assert [line for line in again.err.splitlines() if "error estimated" in line] == [
-        line for line in first.err.splitlines() if "error estimated" in line
-    ]
 
 
 def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> None:
@@ -259,9 +246,9 @@ def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, 
 def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float | None] = []
     monkeypatch.setattr("flexstage.solid.results.verification.verify", lambda *_: pytest.fail("computed"))
-    monkeypatch.setattr("flexstage.solid.commands.solid.work_ahead", lambda _todo, ways, _notice: asked.append(ways.limits.memory))
-    monkeypatch.setattr("flexstage.solid.commands.solid.solids", lambda ways, *_: asked.append(ways.limits.memory))
-    monkeypatch.setattr("flexstage.solid.commands.solid.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.solid.commands.solid.work_ahead", lambda _todo, ways: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.solid.commands.solid.solids", lambda ways: asked.append(ways.limits.memory))
+    monkeypatch.setattr("flexstage.solid.commands.solid.hinges", lambda _accuracy, _order, ways: asked.append(ways.limits.memory))
     with pytest.raises(pytest.fail.Exception):
         command("verify", "stage.toml", "--memory", "3 GB")
     assert asked == [3e9, 3e9, 3e9]

@@ -1,7 +1,6 @@
 """The command `sweep`: results that survive being killed, whoever computes them; studies that cannot be."""
 
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -91,7 +90,6 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
     (tmp_path / "random.py").write_text("raise SystemExit('a file of the user')")  # lies where the processes are started
     done = flexstage("sweep", "study.toml", "-o", "r.h5", "--report", "r.html", "--json", "r.json")
     assert done.code == 0, done.err
-    assert re.search(r"^to do: 40 designs, 1 at once; about \d+ s by the first few\.$", done.err, re.MULTILINE)
     assert "frequency.1" in done.out
     assert (tmp_path / "r.html").read_text().startswith("<!doctype html>")
     again = flexstage("sweep", "study.toml", "-o", "r.h5")

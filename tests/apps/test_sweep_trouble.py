@@ -1,4 +1,4 @@
-"""The command `sweep` in trouble: full disks, damaged files, clusters that are none; what was computed is kept."""
+"""The command `sweep` in trouble: full disks, damaged files; what was computed is kept."""
 
 import os
 import subprocess
@@ -6,15 +6,12 @@ import sys
 
 import h5py
 import numpy as np
-import psutil
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.studies.sweeps.execution.gather import file_size
 from flexstage.studies.sweeps.execution.run import Run, sweep
-from flexstage.studies.sweeps.execution.store import folder_of, read_results
+from flexstage.studies.sweeps.execution.store import file_size, folder_of, read_results
 from flexstage.studies.sweeps.file import loads_study
-from tests.conftest import FULL
 
 STUDY = """
 format = "flexstage study 1"
@@ -113,30 +110,8 @@ def test_a_damaged_piece_is_named(tmp_path, flexstage):
     assert (done.code, "000000000256.npz: it is no piece" in done.err) == (2, True), done.err
 
 
-def test_schedulers_that_are_none_are_told_soon(tmp_path, flexstage):
-    (tmp_path / "study.toml").write_text(STUDY)
-    done = flexstage("sweep", "study.toml", "-o", "r.h5", "--scheduler", "tcp://nowhere")
-    assert (done.code, "no Dask scheduler answers at tcp://nowhere" in done.err) == (2, True), done.err
-    assert not (tmp_path / "r.h5").exists()
-
-
 def test_what_made_results_is_kept(whole, tmp_path):
     (tmp_path / "r.h5").write_bytes(whole)
     (made,) = read_results(tmp_path / "r.h5").made
     assert f"numpy {np.__version__}" in made
     assert "kernel" in made
-
-
-@pytest.mark.skipif(not FULL, reason="two worker processes: seconds")
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_cluster_gives_the_same_file_though_a_worker_dies(tmp_path, whole, workers):
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster:
-        doomed = [cluster.workers[0]]
-
-        def kill(done, _):
-            if 0 < done < 700 and doomed:
-                psutil.Process(doomed.pop().pid).kill()
-
-        sweep(loads_study(STUDY), tmp_path / "r.h5", Run(scheduler=cluster.scheduler_address), kill)
-    assert (tmp_path / "r.h5").read_bytes() == whole

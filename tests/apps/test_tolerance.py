@@ -31,7 +31,6 @@ def study_file(tmp_path):
 def test_tolerance_shows_and_writes(study_file, tmp_path, flexstage):
     done = flexstage("tolerance", "study.toml", "-o", "r.h5", "--report", "r.html", "--json", "r.json", "--workers", "1")
     assert done.code == 0, done.err
-    assert "to do: 104 designs, 1 at once; about " in done.err
     for said in ("All together", "What is allowed", "Crosstalk", "+-5 um", "common to 4"):
         assert said in done.out
     told = json.loads((tmp_path / "r.json").read_text())
@@ -48,7 +47,7 @@ def test_tolerance_shows_and_writes(study_file, tmp_path, flexstage):
     assert [each["kind"] for each in told["crosstalk"]] == ["open"]  # one gauge does not tell six motions
     page = (tmp_path / "r.html").read_text()
     assert page.startswith("<!doctype html>")
-    assert page.count("<svg") == 5
+    assert page.count("<svg") == 2
     assert kept.complete
     np.testing.assert_array_equal(kept.responses[:40], piece(study, 0, 40).responses)
     study_file.write_text(STUDY.replace("5 um", "6 um"))

@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 27_600,
+    "base": 27_100,
     "spatial": 3_900,
-    "parts": 37_700,
+    "parts": 37_600,
     "beams": 25_500,
-    "mechanism": 57_200,
-    "cases": 5_300,
-    "models": 90_900,
-    "analysis": 70_200,
-    "show": 64_900,
-    "solid": 79_200,
-    "experiment": 100_700,
-    "control": 158_100,
-    "studies": 54_600,
-    "apps": 36_200,
+    "mechanism": 54_200,
+    "cases": 1_200,
+    "models": 90_800,
+    "analysis": 66_800,
+    "show": 62_500,
+    "solid": 76_300,
+    "experiment": 98_000,
+    "control": 152_000,
+    "studies": 49_800,
+    "apps": 34_400,
     ".": 400,
-    "all": 811_700,
+    "all": 779_900,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

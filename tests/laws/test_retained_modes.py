@@ -13,7 +13,6 @@ from flexstage.cases.registry import CASES, case
 from flexstage.control.plant_models.plants import zero_order_hold
 from flexstage.control.plant_models.reduction import mode_names, reduce_modes
 from flexstage.control.plant_models.retention import retention
-from flexstage.control.robustness.response_margins import feedback_response
 from flexstage.control.robustness.stability_margins import margins, peaks
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.control import make_controller
@@ -21,7 +20,7 @@ from flexstage.control.study.resolve import resolve, retain_modes
 from flexstage.control.study.retained import control_and_modes
 from flexstage.control.study.setup import AmplifierSetup, ControllerSetup, GaugeSetup, LoopSetup
 from flexstage.control.study.study import loop_study
-from flexstage.control.systems.closed import LoopBreak, loop
+from flexstage.control.systems.closed import LoopBreak, loop, pose_controller
 from flexstage.control.systems.curves import curves
 from flexstage.control.systems.system import select
 from flexstage.mechanism.assembly.pattern import Pose
@@ -145,7 +144,7 @@ def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the
         loops = given.plant.coordinates
         both = [select(zero_order_hold(each), loops.actuators, [f"gap.{name}" for name in loops.gauges]) for each in (few, given.whole)]
         plants = [loops.pose @ each.transfer(lines) for each in both]
-        feedback = feedback_response(closed.controller, loops, lines)
+        feedback = pose_controller(closed.controller, loops).sweep(lines, slice(len(loops.names)))
         change = (plants[1] - plants[0]) @ feedback @ np.linalg.inv(np.eye(len(loops.names)) + plants[0] @ feedback)
         direct = np.max(np.linalg.norm(loops.scale[:, None] * change / loops.scale, 2, axis=(1, 2)))
         if direct > 1e-4:

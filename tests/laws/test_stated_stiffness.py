@@ -42,11 +42,11 @@ def test_a_stated_stiffness_does_what_its_inverse_as_a_stated_compliance_does(pa
 def test_a_singular_stiffness_counts_as_it_is_and_has_no_compliance():
     part = Stated(np.diag([-3e3, 0.0, 2e5, 0.0, 1.0, 1.0]))
     np.testing.assert_array_equal(law(part, None).stiffness, part.matrix)
-    with pytest.raises(DesignError, match="kind stated: it has no stiffness in some motion of y, rx, so that"):
+    with pytest.raises(DesignError, match="kind stated: singular stiffness in y, rx, so that"):
         compliance(part, None)
     tilted = np.diag([1e5, 1e5, 1e5, 1.0, 1.0, 1.0])
     tilted[0, 1] = tilted[1, 0] = 1e5
-    with pytest.raises(DesignError, match="some motion of x, y,"):
+    with pytest.raises(DesignError, match="singular stiffness in x, y,"):
         compliance(Stated(tilted), None)
 
 

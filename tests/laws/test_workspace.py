@@ -174,8 +174,7 @@ def test_lines_of_force_and_stroke_cross(mechanism):
     )
     assert np.all(stacks.stage_stiffness > -1e-6 * stacks.stiffness)
     lines = platform_lines(kinematics.mapping, model, stroke_limits(mechanism))
-    np.testing.assert_allclose(lines.against(0.0), lines.travel)
-    np.testing.assert_allclose(lines.against(lines.stiffness), 0.5 * lines.travel)
+    np.testing.assert_allclose(lines.blocking, lines.travel * lines.stiffness)
 
 
 @given(actuated_platforms())

@@ -13,8 +13,9 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Straight
 from flexstage.parts.rod import Rod
+from flexstage.solid.fea.jobs.parts import Ways
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
-from flexstage.solid.fea.solver.model import SolidModel, model_with_parts
+from flexstage.solid.results.read import SolidRead, read_solid, solids
 from tests.stock import ALUMINIUM, GAUGE, STEEL
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, grading=0.6, order=2), modes=4)
@@ -70,6 +71,6 @@ def floating() -> Mechanism:
 
 
 @cache
-def read_floating() -> SolidModel:
+def read_floating() -> SolidRead:
     """The solid model of `floating`."""
-    return model_with_parts(floating(), COARSE, cache=None)
+    return read_solid(floating(), COARSE, solids(Ways(cache=None)))

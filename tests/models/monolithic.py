@@ -46,7 +46,7 @@ def monolithic(
         parts = sound_components(mechanism, cache, Cut.NONE, pool)
         springs = {part.name: _springs(assembly, part) for part in parts}
         whole = reduce_parts(parts, reduction, Ways(cache, progress, Limits(memory=memory), pool), springs)
-    return linear_model(mechanism, assembly, whole.parts, f"monolithic solid model of {digest(mechanism, physics=True)[:16]}")
+    return linear_model(mechanism, assembly, whole, f"monolithic solid model of {digest(mechanism, physics=True)[:16]}")
 
 
 def _springs(assembly: Assembly, component: Component) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -43,23 +42,24 @@ def formed(part: Shaped) -> HingeForm:
     return HingeForm(part, STEEL, HELD if isinstance(part, Rod) else own_roots(part))
 
 
-def kept(part: Shaped, ways: Ways, notice: Callable[[Finding], None] | None = None) -> HingeSolid:
-    return hinges_from_cache({"prop": formed(part)}, ROUGH, ways, notice)["prop"]
+def kept(part: Shaped, ways: Ways) -> HingeSolid:
+    return hinges_from_cache({"prop": formed(part)}, ROUGH, ways)["prop"]
 
 
 def test_kept_computed_and_plain_hinges_are_the_same(tmp_path: Path) -> None:
-    ways, notices = Ways(Cache(tmp_path)), list[Finding]()
-    computed = kept(ROD, ways, notices.append)
+    notices: list[Finding] = []
+    ways = Ways(Cache(tmp_path), notice=notices.append)
+    computed = kept(ROD, ways)
     plain = hinge_compliance(ROD, STEEL, ROUGH, roots=HELD)
     size = np.sqrt(np.diag(plain.compliance))
     assert np.max(np.abs(computed.compliance - plain.compliance) / np.outer(size, size)) < 1e-9  # rounding of another process
     assert computed.freedoms == plain.freedoms
     (path,) = tmp_path.iterdir()
     before = path.read_bytes()
-    assert same(kept(ROD, ways, notices.append), computed)
+    assert same(kept(ROD, ways), computed)
     assert notices == []
     path.write_bytes(before.replace(b"1", b"2", 1))
-    assert same(kept(ROD, ways, notices.append), computed)
+    assert same(kept(ROD, ways), computed)
     assert path.read_bytes() == before
     (notice,) = notices
     assert "do not have the checksum it states" in notice.what

@@ -190,8 +190,8 @@ def test_a_shaped_step_rings_less():
 
 
 def test_what_cannot_be_is_said():
-    asked = [FollowSetup(Following.ZV), FollowSetup(Following.INVERSE, frequency=3.0), FollowSetup(Following.LEARNING, passes=0)]
+    asked = [FollowSetup(Following.ZV), FollowSetup(Following.INVERSE, frequency=3.0)]
     told = [str(finding) for each in asked for finding in setup_findings(LoopSetup(follow=each))]
-    assert [each.partition(":")[0] for each in told] == ["follow.frequency", "follow.frequency", "follow.passes"]
+    assert [each.partition(":")[0] for each in told] == ["follow.frequency", "follow.frequency"]
     with pytest.raises(DesignError, match="its frequency is 0 Hz"):
         zv(0.0, 0.1)

@@ -12,7 +12,6 @@ import scipy
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.dynamics.modes import subspace_angle
 from flexstage.base.number import Array
 from flexstage.experiment import Amplifier, AntiAlias, InputQuantity, InputSignal, NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.formats.read import read
@@ -176,7 +175,7 @@ def test_identification_finds_the_modes_of_the_stage(name: str) -> None:
     assert found.close == ((0, 1), (4, 5))
     seen = ports(model, [each.name for each in found.outputs], ["B1"]).output @ expected.shapes[:, list(expected.platform)]
     for group in ((0, 1), (2,), (3,), (4, 5)):
-        angle = subspace_angle(seen[:, list(group)], found.real_shapes[:, list(group)])
+        angle = np.max(scipy.linalg.subspace_angles(seen[:, list(group)], found.real_shapes[:, list(group)]))
         assert np.degrees(angle) < 2.0
 
 

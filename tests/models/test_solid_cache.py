@@ -8,13 +8,14 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.base.processes.progress import Step
 from flexstage.base.units.scale import mm
 from flexstage.models.linear.model import LinearModel
@@ -23,18 +24,15 @@ from flexstage.solid.fea.jobs import parts as parts_module
 from flexstage.solid.fea.jobs.cache import Cache, find, folder_of, keep, key_of
 from flexstage.solid.fea.jobs.parts import Ways, reduce_parts
 from flexstage.solid.fea.jobs.remote import Limits
-from flexstage.solid.fea.jobs.store import to_bytes, versions
+from flexstage.solid.fea.jobs.store import program, to_bytes
 from flexstage.solid.fea.solver.component import components
-from flexstage.solid.fea.solver.model import model as solid
-from flexstage.solid.fea.solver.model import model_with_parts
+from flexstage.solid.results.read import model as solid
+from flexstage.solid.results.read import read_solid, solids
 from tests.models.small_solids import COARSE, Bomb, propped
 from tests.roundtrip.test_superelements import superelement
 
 ELEMENT = superelement(0)
-
-
-def data(key: str) -> bytes:
-    return to_bytes(ELEMENT, key, versions())
+DIGEST = sha256(program().encode()).hexdigest()[:12]
 
 
 def names(folder: Path) -> list[str]:
@@ -49,13 +47,10 @@ def same(one: LinearModel, other: LinearModel) -> bool:
 
 def test_what_is_kept_is_found(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "deep" / "down")
-    assert find(cache, "key", "lever").element is None
-    assert keep(cache, "key", "lever", data("key")) == ()
-    found = find(cache, "key", "lever")
-    assert found.element is not None
-    assert found.notices == ()
-    assert np.array_equal(found.element.rigid, ELEMENT.rigid)
-    assert names(tmp_path / "deep" / "down") == [f"key-{versions().digest}.superelement"]
+    assert find(cache, "key", "lever") is None
+    keep(cache, "key", "lever", ELEMENT)
+    assert np.array_equal(find(cache, "key", "lever").rigid, ELEMENT.rigid)
+    assert names(tmp_path / "deep" / "down") == [f"key-{DIGEST}.superelement"]
 
 
 def test_the_folder_is_that_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,35 +77,35 @@ def test_keys_are_of_content_and_reduction() -> None:
 
 def test_a_damaged_file_is_told_and_replaced(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
-    keep(cache, "key", "lever", data("key"))
+    keep(cache, "key", "lever", ELEMENT)
     (path,) = tmp_path.iterdir()
     path.write_bytes(path.read_bytes()[:-100])
-    found = find(cache, "key", "lever")
-    assert found.element is None
-    (notice,) = found.notices
+    notices: list[Finding] = []
+    assert find(cache, "key", "lever", notice=notices.append) is None
+    (notice,) = notices
     assert notice.where == "lever"
     assert str(path) in notice.what
     assert "damaged" in notice.what
-    keep(cache, "key", "lever", data("key"))
-    assert find(cache, "key", "lever").element is not None
+    keep(cache, "key", "lever", ELEMENT)
+    assert find(cache, "key", "lever") is not None
 
 
-def test_other_versions_are_told_and_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_versions_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cache = Cache(tmp_path)
-    keep(cache, "key", "lever", data("key"))
-    newer = replace(versions(), flexstage="99.0")
-    monkeypatch.setattr("flexstage.solid.fea.jobs.cache.versions", lambda _: newer)
-    found = find(cache, "key", "lever")
-    assert found.element is None
-    assert "of other versions only (1), here is flexstage 99.0" in found.notices[0].what
-    keep(cache, "key", "lever", to_bytes(ELEMENT, "key", newer))
-    assert find(cache, "key", "lever").element is not None
+    keep(cache, "key", "lever", ELEMENT)
+    for module in ("cache", "store"):
+        monkeypatch.setattr(f"flexstage.solid.fea.jobs.{module}.program", lambda: "flexstage 99.0")
+    assert find(cache, "key", "lever") is None
+    keep(cache, "key", "lever", ELEMENT)
+    assert find(cache, "key", "lever") is not None
     assert len(names(tmp_path)) == 2
 
 
 def test_an_unwritable_folder_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    (notice,) = keep(Cache(tmp_path / "file"), "key", "lever", data("key"))
+    notices: list[Finding] = []
+    keep(Cache(tmp_path / "file"), "key", "lever", ELEMENT, notice=notices.append)
+    (notice,) = notices
     assert notice.where == "lever"
     assert "could not be kept" in notice.what
     assert "FLEXSTAGE_CACHE" in notice.advice
@@ -121,19 +116,23 @@ def test_a_full_disk_is_told_and_nothing_is_half_written(tmp_path: Path, monkeyp
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(os, "fsync", full)
-    (notice,) = keep(Cache(tmp_path), "key", "lever", data("key"))
+    notices: list[Finding] = []
+    keep(Cache(tmp_path), "key", "lever", ELEMENT, notice=notices.append)
+    (notice,) = notices
     assert "No space left on device" in notice.what
     assert names(tmp_path) == []
 
 
 @pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="mounts a small disk, which only root may")
 def test_a_small_disk_that_is_full_is_told_and_nothing_is_half_written(tmp_path: Path) -> None:
-    size = len(data("key"))
+    size = len(to_bytes(ELEMENT, "a"))
     command = ["mount", "-t", "tmpfs", "-o", f"size={max(4096, size // 8192 * 4096)}", "tmpfs", str(tmp_path)]
     if subprocess.run(command, capture_output=True, check=False).returncode:
         pytest.skip("this root may not mount")
     try:
-        (notice,) = keep(Cache(tmp_path), "key", "lever", data("key"))
+        notices: list[Finding] = []
+        keep(Cache(tmp_path), "key", "lever", ELEMENT, notice=notices.append)
+        (notice,) = notices
         assert "No space left on device" in notice.what
         assert names(tmp_path) == []
     finally:
@@ -145,24 +144,24 @@ def test_an_interruption_while_writing_leaves_the_old_file(tmp_path: Path, monke
         raise KeyboardInterrupt
 
     cache = Cache(tmp_path)
-    keep(cache, "key", "lever", data("key"))
+    keep(cache, "key", "lever", ELEMENT)
     before = names(tmp_path)
     monkeypatch.setattr(os, "fsync", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        keep(cache, "key", "lever", data("key"))
+        keep(cache, "key", "lever", ELEMENT)
     assert names(tmp_path) == before
-    assert find(cache, "key", "lever").element is not None
+    assert find(cache, "key", "lever") is not None
 
 
 def test_the_least_recently_used_go_first(tmp_path: Path) -> None:
-    size = len(data("a"))
+    size = len(to_bytes(ELEMENT, "a"))
     cache = Cache(tmp_path, limit=2.5 * size)
     for age, key in ((300.0, "a"), (200.0, "b")):
-        keep(cache, key, key, data(key))
+        keep(cache, key, key, ELEMENT)
         then = time.time() - age
-        os.utime(tmp_path / f"{key}-{versions().digest}.superelement", (then, then))
-    assert find(cache, "a", "a").element is not None  # used now: b is the older one
-    keep(cache, "c", "c", data("c"))
+        os.utime(tmp_path / f"{key}-{DIGEST}.superelement", (then, then))
+    assert find(cache, "a", "a") is not None  # used now: b is the older one
+    keep(cache, "c", "c", ELEMENT)
     assert [name[0] for name in names(tmp_path)] == ["a", "c"]
 
 
@@ -178,13 +177,12 @@ def test_a_reading_that_was_stopped_resumes(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         reduce_parts(components(stage), COARSE, ways)
     assert len(names(tmp_path)) == 1
-    first = model_with_parts(stage, COARSE, cache=Cache(tmp_path), progress=done.append)
+    first = read_solid(stage, COARSE, solids(Ways(Cache(tmp_path), done.append)))
     assert not any("prop 2" in step.text for step in done)  # the longest job is the first
     assert len(names(tmp_path)) == 2  # two of the three are equal
-    assert first.superelements[0] is first.superelements[2]
-    again = model_with_parts(stage, COARSE, cache=Cache(tmp_path), progress=lambda _step: pytest.fail("nothing is left to compute"))
+    assert first.placed[0].element is first.placed[2].element
+    again = read_solid(stage, COARSE, solids(Ways(Cache(tmp_path), lambda _step: pytest.fail("nothing is left to compute"))))
     assert same(first.model, again.model)
-    assert again.notices == ()
 
 
 def test_readings_are_complete_whatever_the_cache_is_like(tmp_path: Path) -> None:

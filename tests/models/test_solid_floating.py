@@ -17,7 +17,7 @@ from flexstage.parts.mass import MassProperties
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import length
-from flexstage.solid.fea.solver.model import model_with_parts
+from flexstage.solid.results.read import model as fea_model
 from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, transport
 from tests.models.floating import COARSE, MOUNT, STACK, floating, read_floating
 
@@ -159,7 +159,7 @@ def stack_alone() -> Mechanism:
 
 def test_a_cased_stack_has_its_stiffness_its_rigidity_and_its_stroke() -> None:
     """1/k along, M L/B and M L^2/(2 B) under a moment, as in torsion; the stroke moves the free end alone; the load passes whole."""
-    model, size, rigidity = model_with_parts(stack_alone(), COARSE, cache=None).model, STACK.length, STACK.bending_rigidity
+    model, size, rigidity = fea_model(stack_alone(), COARSE, cache=None), STACK.length, STACK.bending_rigidity
     assert rigidity is not None
     twist, wrench = (tuple(f"{PLATFORM}.{name}" for name in names) for names in (COMPONENTS, FORCES))
     flexibility = static_gain(model, twist, wrench).values

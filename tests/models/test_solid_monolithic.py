@@ -16,8 +16,8 @@ from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from flexstage.solid.fea.solver.assemble import linear_model
 from flexstage.solid.fea.solver.component import Component, Cut, components, groups
-from flexstage.solid.fea.solver.model import model as solid
 from flexstage.solid.fea.solver.superelement import Skin, Superelement
+from flexstage.solid.results.read import model as solid
 from flexstage.spatial.frame import COMPONENTS
 from tests.models.monolithic import monolithic
 from tests.models.small_solids import COARSE as SMALL

@@ -28,7 +28,7 @@ from flexstage.solid.fea.jobs.memory import Counts, entries, freedoms, needed
 from flexstage.solid.fea.jobs.progress import Stage
 from flexstage.solid.fea.jobs.reducing import Reduce, fewest_elements
 from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all
-from flexstage.solid.fea.jobs.store import from_bytes
+from flexstage.solid.fea.jobs.store import to_bytes
 from flexstage.solid.fea.solver.superelement import Superelement
 from flexstage.spatial.frame import Frame
 from tests.models.small_solids import COARSE, Bomb, job, mined, rod
@@ -76,8 +76,7 @@ def told(*jobs: Reduce, limits: Limits = FREE) -> tuple[Finding, ...]:
 def results(*jobs: Reduce, limits: Limits = FREE) -> dict[str, Superelement]:
     found: dict[str, Superelement] = {}
 
-    def take(done: Reduce, data: bytes) -> None:
-        element = from_bytes(data, done.key)
+    def take(done: Reduce, element: object) -> None:
         assert isinstance(element, Superelement)
         found[done.name] = element
 
@@ -163,7 +162,7 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
     jobs = [job(rod()), job(replace(rod(), name="again"))]
     with Pool() as pool:
         for part in (jobs,) if workers == 2 else ([each] for each in jobs):  # the process stays from run to run
-            work_all(part, lambda _job, data: outcomes.append(data), Limits(workers=workers), pool=pool)
+            work_all(part, lambda _job, found: outcomes.append(to_bytes(found, "key")), Limits(workers=workers), pool=pool)
         assert len(pool.idle) == workers
     assert outcomes[0] == outcomes[1]
     assert len(started) == workers
@@ -197,13 +196,12 @@ def test_a_process_that_has_ended_is_not_asked_again(monkeypatch: pytest.MonkeyP
 
 
 def test_orders_that_share_a_mesh_repeat_bit_by_bit() -> None:
-    from flexstage.solid.fea.jobs.store import to_bytes, versions
     from flexstage.solid.fea.meshing import mesh
     from flexstage.solid.fea.solver.reduce import reduce_mesh
 
     def reduced(order: int) -> bytes:
         way = replace(COARSE, fineness=replace(COARSE.fineness, order=order))
-        return to_bytes(reduce_mesh(rod(), mesh.mesh_component(rod(), way.fineness), way), "key", versions())
+        return to_bytes(reduce_mesh(rod(), mesh.mesh_component(rod(), way.fineness), way), "key")
 
     made = mesh._straight_mesh.cache_info().misses
     together = [reduced(order) for order in (2, 1, 2)]
@@ -341,7 +339,7 @@ sys.path.insert(0, {root!r})
 from flexstage.solid.fea.jobs.reducing import Reduce, fewest_elements
 from flexstage.solid.fea.jobs.remote import Limits, work_all
 from tests.models.small_solids import Bomb, job, mined, rod
-work_all([{job}], lambda each, data: print(each.name, len(data) > 1000), Limits())
+work_all([{job}], lambda each, found: print(each.name, found.freedoms > 100), Limits())
 """
 ROOT = str(Path(__file__).parents[2])
 

@@ -18,7 +18,7 @@ from flexstage.solid.fea.solver.assemble import linear_model
 from flexstage.solid.fea.solver.component import components
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, spatial_rotation, turn_z, twist_transform
 from tests.laws.strategies import moved
-from tests.models.solids import read
+from tests.models.solids import parts_of, read
 
 TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
 WRENCH = tuple(f"{PLATFORM}.{name}" for name in FORCES)
@@ -62,7 +62,7 @@ def test_superelements_do_not_resist_rigid_motion(guide):
     """Where nothing is held by the ground, interfaces moved rigidly strain nothing."""
     _, solid = guide
     seen = 0
-    for component, element in solid.parts:
+    for component, element in parts_of(solid):
         if component.fixed or not component.interfaces:
             continue
         whole = sum(element.stiffness.values())
@@ -84,7 +84,7 @@ def test_mass_is_that_of_the_outlines(guide):
 def test_mass_of_a_whole_component_is_its_drawings(guide):
     """Necks and adapters together, however counted: the meshed volume against that of the CAD solids."""
     _, solid = guide
-    for component, element in solid.parts:
+    for component, element in parts_of(solid):
         if not component.fixed:
             drawing = cad(component)
             weight = 1e-9 * drawing.shape.mass * drawing.media[0].density  # one medium each; mm^3
@@ -95,7 +95,7 @@ def test_stack_has_its_stated_stiffness_and_stroke(guide):
     """The stack alone, free: its stroke; held: its blocking force; pulled: its stiffness (end caps plane)."""
     stage, solid = guide
     part = expand(stage).links["B/pzt"].part
-    component, element = next((one, other) for one, other in solid.parts if one.name.endswith("pzt"))
+    component, element = next((one, other) for one, other in parts_of(solid) if one.name.endswith("pzt"))
     whole = sum(element.stiffness.values())
     boundary = whole[:12, :12]
     axis = component.pieces[0].frame.rotation[:, 0]
@@ -123,7 +123,7 @@ def test_moving_the_stage_changes_only_frames(guide):
     there_stage = moved(stage, turn, shift)
     placed = tuple(
         (replace(old, place=Frame(turn, shift)) if is_drawn_in_the_stage(old) else new, element)
-        for new, (old, element) in zip(components(there_stage), solid.parts, strict=True)
+        for new, (old, element) in zip(components(there_stage), parts_of(solid), strict=True)
     )
     there = linear_model(there_stage, expand(there_stage), placed, "moved")
     carry = spatial_rotation(turn)
@@ -159,7 +159,8 @@ def test_free_stage_is_named(guide):
     """Held by nothing, the stage moves freely, and the finding says what moves."""
     stage, solid = guide
     released = tuple(
-        (part, replace(element, stiffness={name: 0.0 * law for name, law in element.stiffness.items()})) for part, element in solid.parts
+        (part, replace(element, stiffness={name: 0.0 * law for name, law in element.stiffness.items()}))
+        for part, element in parts_of(solid)
     )
     with pytest.raises(DesignError, match="no stiffness"):
         linear_model(stage, expand(stage), released, "released")

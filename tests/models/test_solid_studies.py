@@ -22,7 +22,6 @@ from flexstage.solid.fea.jobs.hinge_cache import HingeJob
 from flexstage.solid.fea.jobs.parts import Parts, Ways, content_in_stage, reduce_jobs
 from flexstage.solid.fea.jobs.reducing import Reduce
 from flexstage.solid.fea.jobs.remote import Pool
-from flexstage.solid.fea.jobs.store import to_bytes, versions
 from flexstage.solid.fea.jobs.worker import Job
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.fea.solver.component import components
@@ -249,7 +248,7 @@ def test_a_solid_is_worked_in_one_queue_too(tmp_path: Path) -> None:
     whole, bare = (reduction_plan([stage], Resolution(order=2), ways, bare=bare) for bare in (False, True))
     assert [phase.name for phase in whole.phases] == [phase.name for phase in bare.phases] == ["order 1", "order 2"]
     assert {job.reduction.modes for phase in bare.phases for job in phase.todo if isinstance(job, Reduce)} == {0}
-    assert whole.needed == set(whole.together)
+    assert whole.needed == {job.key for phase in whole.phases for job in phase.todo}
     assert not whole.needed & bare.needed
 
 
@@ -274,10 +273,10 @@ def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path
     first, second = (replace(job, key=key) for key, job in zip(("stage", "unit"), reduce_jobs(components(small()), OF_SMALL), strict=False))
     plan = Plan((Phase("order 3", {}, todo=(first, second)),), lanes=1, needed=frozenset({"stage"}))
 
-    def work_all(jobs: list[Reduce], done: Callable[[Reduce, bytes], None], *_: object) -> None:
+    def work_all(jobs: list[Reduce], done: Callable[[Reduce, Superelement], None], *_: object) -> None:
         for job in jobs:
             if job.key in able:
-                done(job, to_bytes(EMPTY, job.key, versions()))
+                done(job, EMPTY)
         raise DesignError((Finding("one", "failed", "Mend it"),))
 
     monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", work_all)

@@ -16,7 +16,7 @@ from flexstage.parts.condensation import condense
 from flexstage.parts.leaf import Leaf
 from flexstage.solid.exchange.matrices import export_superelement
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
-from flexstage.solid.fea.solver.model import model
+from flexstage.solid.results.read import model
 from flexstage.spatial.frame import COMPONENTS, FORCES
 from tests.stock import STEEL
 

@@ -25,8 +25,8 @@ from flexstage.parts.voice_coil import Supply, VoiceCoil
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from flexstage.solid.fea.solver.component import components
-from flexstage.solid.fea.solver.model import model
 from flexstage.solid.fea.solver.ties import in_words, stated_links
+from flexstage.solid.results.read import model
 from flexstage.solid.results.resolution import Resolution
 from flexstage.solid.results.verification import verify
 from flexstage.solid.show.tables import verdict_table_of

@@ -18,7 +18,6 @@ from flexstage.mechanism.restrict import isolate
 from flexstage.solid.fea.geometry import sound
 from flexstage.solid.fea.geometry.sound import stage_findings
 from flexstage.solid.fea.jobs.cache import Cache
-from flexstage.solid.fea.solver.model import model_with_parts
 from flexstage.solid.results.read import read_solid, solids
 from tests.models.monolithic import monolithic
 from tests.models.small_solids import COARSE, propped
@@ -40,14 +39,13 @@ def gaping() -> Mechanism:
     "reads",
     [
         lambda stage: fs.solid.model(stage, COARSE, cache=None),
-        lambda stage: model_with_parts(stage, COARSE, cache=None),
         lambda stage: monolithic(stage, COARSE, cache=None),
         lambda stage: read_solid(stage, COARSE, solids()),
     ],
-    ids=["solid", "model_with_parts", "monolithic", "read_solid"],
+    ids=["solid", "monolithic", "read_solid"],
 )
 def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in ("flexstage.solid.fea.solver.model", "tests.models.monolithic", "flexstage.solid.results.read"):
+    for module in ("tests.models.monolithic", "flexstage.solid.results.read"):
         monkeypatch.setattr(f"{module}.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
     with pytest.raises(DesignError) as caught:
         reads(gaping())

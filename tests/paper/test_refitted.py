@@ -10,7 +10,7 @@ from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.mechanism.restrict import isolate
 from flexstage.models.linear.static import static_gain
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
-from flexstage.solid.fea.solver.model import model as solid
+from flexstage.solid.results.read import model as solid
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)

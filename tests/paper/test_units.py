@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from flexstage.analysis.linear_statics.units import units
-from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
+from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 
 BOTH = pytest.mark.parametrize("parameters", [SM_REF_A, SM_REF_B])
 
 
 @BOTH
-def test_horizontal_unit(parameters: DoubleTriangle) -> None:
+def test_horizontal_unit(parameters: str) -> None:
     unit = units(double_triangle(parameters))["horizontal"]
     assert unit.axial == pytest.approx(10.300e6, rel=5e-5)
     assert unit.lateral[1] == pytest.approx(0.00120e6, abs=5.0)
@@ -20,7 +20,7 @@ def test_horizontal_unit(parameters: DoubleTriangle) -> None:
 
 
 @BOTH
-def test_vertical_unit(parameters: DoubleTriangle) -> None:
+def test_vertical_unit(parameters: str) -> None:
     unit = units(double_triangle(parameters))["vertical"]
     assert unit.ideal_gain == pytest.approx(3.0, rel=1e-12)
     assert unit.lever is not None

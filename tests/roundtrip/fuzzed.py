@@ -30,8 +30,7 @@ from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.store import dumps, loads, round_to_digits
 from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.example import neck_study
-from flexstage.studies.sweeps.execution.gather import gather
-from flexstage.studies.sweeps.execution.store import read_results
+from flexstage.studies.sweeps.execution.store import gather, read_results
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.tolerances.file import loads_tolerance
 from tests.roundtrip.designs import TEXT

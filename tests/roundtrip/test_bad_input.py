@@ -349,7 +349,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
             ["placements.LLL", "70 characters"],
         ),
         (dataclasses.replace(STAGE, overrides={"L2/front.diameter": -0.001}), ['overrides."L2/front.diameter"', "-1 mm"]),
-        (dataclasses.replace(STAGE, overrides={"L2/front.diameter": "1 mm"}), ['overrides."L2/front.diameter"', "'1 mm'", "a length"]),
+        (dataclasses.replace(STAGE, overrides={"L2/front.diameter": "1 mm"}), ['overrides."L2/front.diameter"', "'1 mm'", "a number"]),
         (dataclasses.replace(STAGE, overrides={"L9/front.diameter": 0.001}), ['overrides."L9/front.diameter"', '"L9"']),
         (dataclasses.replace(STAGE, tags={"parts.wire.width": "assumed"}), ['tags."parts.wire.width"', "points nowhere"]),
         (dataclasses.replace(STAGE, tags={"parts.wire.length": "stated"}), ["stated by no source", "paper"]),

@@ -25,7 +25,7 @@ from flexstage.solid.fea.geometry.contact import contact_findings
 from flexstage.solid.fea.geometry.imported import import_findings, imported_shape, measure, with_properties
 from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
-from flexstage.solid.fea.solver.model import model as solid
+from flexstage.solid.results.read import model as solid
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 BLOCK = Block("steel", (0.02, 0.03, 0.01), at=(0.02, 0.0, 0.0))

@@ -11,22 +11,22 @@ from hypothesis import strategies as st
 
 from flexstage.base.labelled import NOISE, quiet
 from flexstage.base.units.quantity import Quantity
-from flexstage.show.display import _LADDERS, align_numbers, display_unit_of, field_unit, format_value, number, to_typography
+from flexstage.show.display import UNITS, align_numbers, display_unit_of, field_unit, format_value, ladder, number, to_typography
 
 FINITE = st.floats(min_value=-1e12, max_value=1e12, allow_nan=False).filter(lambda value: value == 0.0 or abs(value) > 1e-12)
 
 
-@pytest.mark.parametrize("si", [unit for unit in _LADDERS if unit != "%"])  # a ratio is shown in per cent where its result says so
+@pytest.mark.parametrize("si", [unit for unit in UNITS if unit != "%"])  # a ratio is shown in per cent where its result says so
 def test_fields_are_shown_in_any_unit_and_display_units_have_their_size(si: str) -> None:
-    for unit, factor in _LADDERS[si]:
+    for unit, factor in ladder(si).items():
         form = field_unit(Quantity("tried", si, unit, ""))
         assert form.unit == unit
         assert math.isclose(form.factor, factor, rel_tol=1e-12), unit
 
 
-@pytest.mark.parametrize("si", _LADDERS)
+@pytest.mark.parametrize("si", UNITS)
 def test_ladders_ascend(si: str) -> None:
-    factors = [factor for _, factor in _LADDERS[si]]
+    factors = list(ladder(si).values())
     assert factors == sorted(factors, reverse=True)
 
 
@@ -44,16 +44,16 @@ def test_a_column_keeps_its_digits(values: list[float]) -> None:
         assert abs(float(text) - value) <= 0.51e-4 * max(abs(value), 0.1 * largest)
 
 
-@given(st.floats(min_value=1e-9, max_value=1e9), st.sampled_from(sorted(_LADDERS)))
+@given(st.floats(min_value=1e-9, max_value=1e9), st.sampled_from(sorted(UNITS)))
 def test_a_value_is_shown_readably(value: float, si: str) -> None:
     text = format_value(value, si)
     figure = float(text.split()[0])
     form = display_unit_of(si, value)
     assert math.isclose(figure, value * form.factor, rel_tol=1e-4)
-    smallest = _LADDERS[si][0][1]
+    smallest = next(iter(ladder(si).values()))
     if value * smallest >= 1.0:
         assert figure >= 0.1
-    if len(_LADDERS[si]) > 2 and value < 1e3:
+    if len(ladder(si)) > 2 and value < 1e3:
         assert figure <= 1e9
 
 

@@ -88,6 +88,6 @@ def test_a_pair_that_interacts_is_drawn():
     paired = swept(mass_and_stiffness(lambda _: 0.1, lambda values: 2e10 * (values[:, 0] - 1e-3) * (values[:, 1] - 1.0) + 3e7))
     tables, page = told(*paired), page_of(*paired)
     assert "leaf, young" in tables
-    assert page.count("<svg") == 5
+    assert page.count("<svg") == 4
     assert "leaf [mm]" in page
     assert "young [%]" in page

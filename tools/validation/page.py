@@ -40,10 +40,10 @@ def chapters() -> list[Chapter]:
     return [
         Chapter("paper", "The paper: units, Eq. 2, Eq. 11, Tables 1 and 2", _PAPER, (*single_units.sections(), *table_1.sections())),
         Chapter("sets", "The paper completed: parameter sets A and B", _SETS, tuple(sets.sections())),
-        Chapter("costs", "What simpler theories omit", _COSTS, tuple(costs.sections())),
+        Chapter("costs", "Omitted degrees of freedom", _COSTS, tuple(costs.sections())),
         Chapter("hinges", "Hinges and leaves", _HINGES, (*hinges.sections(), *assemblies.sections())),
-        Chapter(_PUBLISHED, "Stages of others", _PUBLISHED_TEXT, tuple(published.sections())),
-        Chapter("records", "Modes from records", _RECORDS, tuple(records.sections())),
+        Chapter(_PUBLISHED, "Published stages", _PUBLISHED_TEXT, tuple(published.sections())),
+        Chapter("records", "Identification from records", _RECORDS, tuple(records.sections())),
         Chapter("codes", "Independent codes", _CODES, tuple(codes.sections())),
         Chapter("laws", "Laws on random stages", _LAWS, tuple(laws.sections())),
     ]
@@ -71,9 +71,9 @@ def summary(found: list[Chapter]) -> str:
     lines.append((f"[The paper's stage as solids](validation/{_SOLIDS}.md)", "see page", "", "", ""))
     recorded = [row for chapter in found for row in chapter.rows if row.verdict is Verdict.RECORDED]
     apart = table(("quantity", "source", "reference", "ours", "unit", "difference"), [row.cells()[:6] for row in recorded])
-    parts = ["# Validation", _INTRODUCTION, _made_by(), table(heads, lines), "## Stages of others", _SCORES, scoreboard(found)]
-    parts += ["## What does not agree", _APART, apart]
-    return "\n\n".join([*parts, "## What is not compared", _ABSENT, _TREE, _MADE]) + "\n"
+    parts = ["# Validation", _INTRODUCTION, _made_by(), table(heads, lines), "## Published stages", _SCORES, scoreboard(found)]
+    parts += ["## Disagreements", _APART, apart]
+    return "\n\n".join([*parts, "## Quantities without comparison", _ABSENT, _TREE, _MADE]) + "\n"
 
 
 def scoreboard(found: Iterable[Chapter]) -> str:
@@ -126,24 +126,23 @@ def commit() -> str:
 
 
 _INTRODUCTION = """\
-Every number below is computed by the code as it stands when `make validation` or `make check-all` runs; only references are typed, each
-with its source. Nothing is fitted to a reference, and no tolerance is wider than its source allows: where none is given, ours must round to
-the digits that are printed. For hinges the tolerance is narrower still: beam theory is known to be off, by how much is known too, and ours
-must be *off by that much*."""
+This page compares results of flexstage with published and independent results. `make validation` and `make check-all` compute every value
+again; only references are typed, each with its source. Nothing is fitted. The tolerance is that of the source; without one, our value must
+round to the printed digits. For hinges the error of beam theory is known, and our value must have *this error*."""
 
 _SCORES = """\
-What others printed of stages that they built or computed, agreed or not. Sources, tolerances and the commands that repeat a row stand under
-[stages of others](validation/published.md); the cases are shown in the [gallery](gallery.md)."""
+Published results of stages that were built or computed. Sources, tolerances and the commands that repeat a row are on the page
+[published stages](validation/published.md); the [gallery](gallery.md) shows the cases."""
 
 _APART = """\
-Why is explained under [disagreements](disagreements.md). `make validation` fails if a row disagrees that is not recorded, and if one
-that is recorded agrees."""
+The page [disagreements](disagreements.md) explains the reasons. `make validation` fails if a row disagrees that is not recorded, and if a
+recorded one agrees."""
 
 _ABSENT = """\
-* What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
-* Large displacements beyond what is listed (vibrations of loaded beams, laws of any stage): `tests/analytic/test_loaded_vibrations.py`,
+* Not published in the paper: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
+* Further large displacements (vibrations of loaded beams, invariants of any stage): `tests/analytic/test_loaded_vibrations.py`,
   `tests/laws/test_nonlinear.py`.
-* 3-D finite elements of other stages than the paper's: they are compared in `tests/models`."""
+* Three-dimensional finite elements of other stages: `tests/models`."""
 
 _TREE = """\
 ```{toctree}

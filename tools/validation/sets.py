@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 import flexstage as fs
@@ -121,16 +119,15 @@ def _platform(case: Known) -> list[Row]:
 
 def _variants() -> Section:
     rows: list[Row] = []
-    simple = replace(SM_REF_A, short_arm=15 * MM, long_arm=45 * MM)
-    simple = replace(simple, lever_notch=replace(simple.lever_notch, width=30 * MM), foot_notch=replace(simple.foot_notch, width=30 * MM))
-    lever = Known("simple", double_triangle(simple)).lever
+    arms = {"short_arm": "15 mm", "long_arm": "45 mm", "lever_notch_width": "30 mm", "foot_notch_width": "30 mm"}
+    lever = Known("simple", double_triangle(SM_REF_A, arms)).lever
     rows += [
         Row("r_1 = 15, r_2 = 45 mm: K_theta2", "derived", "194806", 1e3 * float(lever.pivot), "N mm/rad"),
         Row("K_1", "derived", "32.89", 1e-6 * float(lever.drive), "N/um"),
         Row("gain", "derived", "0.97435", float(lever.gain) / 3.0),
     ]
     for name, radii, plate, frequencies in _LAYOUTS:
-        wide = double_triangle(replace(SM_REF_A, horizontal_radius=radii[0] * MM, pole_radius=radii[1] * MM))
+        wide = double_triangle(SM_REF_A, {"horizontal_radius": radii[0] * MM, "pole_radius": radii[1] * MM})
         modes = fs.modes(fs.mapped(with_plate(wide, *(size * MM for size in plate))))
         rows += [
             Row(f"{name}: {modes.names[index]}", "derived", value, float(modes.frequencies[index]), "Hz", Tolerance(0.011))

@@ -12,7 +12,7 @@ from flexstage.analysis.linear_statics.units import UnitResult
 from flexstage.analysis.linear_statics.units import units as units_of
 from flexstage.base.number import Array
 from flexstage.beams.compliance import compliance
-from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
+from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.restrict import isolate, restrict
 from flexstage.models.linear.kinematics import Kinematics
@@ -20,7 +20,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.mapped import LeverStiffness, lever_stiffness
 
 UP = (0.0, 0.0, 1.0)
-SETS: Mapping[str, DoubleTriangle] = {"A": SM_REF_A, "B": SM_REF_B}
+SETS: Mapping[str, str] = {"A": SM_REF_A, "B": SM_REF_B}
 
 
 @dataclass(frozen=True)

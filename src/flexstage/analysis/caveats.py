@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Annotated, Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import stack
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.beams.mass import mass
@@ -72,7 +72,7 @@ class Caveats:
         return tuple(each for each in self.defaults if kind not in each.without)
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def caveats(mechanism: Mechanism) -> Caveats:
     """Warnings and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
 
@@ -204,14 +204,11 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     )
 
 
-def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
+def _large_motions(mechanism: Mechanism) -> Iterator[Finding]:
     """Single-axis strokes beyond what linear models answer for; nothing where the strokes do not determine the platform."""
-    try:
+    with suppress(DesignError):
         found = kinematics(mechanism)
-        single = single_strokes(mechanism, found)
-    except DesignError:
-        return ()
-    return tuple(small_motion(mechanism, found).warnings(single))
+        yield from small_motion(mechanism, found).warnings(single_strokes(mechanism, found))
 
 
 def _catalogue_items(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
@@ -273,17 +270,11 @@ def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
             yield f"{where}.inertia", float(np.max(np.sqrt(largest / np.real(item.mass)))), 0.0, 3.0
 
 
-def _overload_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+def _overload_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Hinges beyond yield, balls that leave their seats and stacks beyond their maximum load under weight, payloads and forces alone."""
-    try:
-        model = drawn(mechanism)
-    except DesignError:
-        return ()
-    found: list[Finding] = []
     for judged in (_stress_findings, _compression_findings, _seat_findings):
         with suppress(DesignError):
-            found += judged(mechanism, model)
-    return tuple(found)
+            yield from judged(mechanism, drawn(mechanism))
 
 
 def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
@@ -319,24 +310,20 @@ def _points(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(where, what, 'State inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or point = true if it is one')
 
 
-def _tension_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+def _tension_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Stacks in tension beyond what they bear; nothing where their forces are not known."""
-    try:
-        return tuple(load_share(mechanism, drawn(mechanism)).tension_findings(stroke_limits(mechanism).from_zero))
-    except DesignError:
-        return ()
+    with suppress(DesignError):
+        yield from load_share(mechanism, drawn(mechanism)).tension_findings(stroke_limits(mechanism).from_zero)
 
 
-def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:
+def _blockages(mechanism: Mechanism) -> Iterator[Finding]:
     """Strokes that cannot move, or a platform that cannot; nothing where the ideal model is refused, which tells why."""
-    try:
+    with suppress(DesignError):
         found = kinematics(mechanism)
-    except DesignError:
-        return ()
-    if found.mobility or found.actuators:
-        return found.blockages
-    what = "its links hold it in all six freedoms: no ideal motion is left"
-    return (Finding(PLATFORM, what, "Free the freedoms of links that it is to move by"),)
+        yield from found.blockages
+        if not found.mobility and not found.actuators:
+            what = "its links hold it in all six freedoms: no ideal motion is left"
+            yield Finding(PLATFORM, what, "Free the freedoms of links that it is to move by")
 
 
 def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+from typing import dataclass_transform
+
 from flexstage.base.lazy import Late
 
 
@@ -26,3 +29,18 @@ class InNotebook:
 
     def _repr_html_(self) -> str:
         return RenderHook.tables.to_html(self)
+
+
+@dataclass_transform(eq_default=False, frozen_default=True, field_specifiers=(field,))
+class Result(InNotebook):
+    """Base of results: its subclasses are frozen dataclasses, equal to themselves alone, that notebooks show.
+
+    >>> class Speed(Result):
+    ...     value: float
+    >>> Speed(2.0).value, Speed(2.0) == Speed(2.0)
+    (2.0, False)
+    """
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        dataclass(frozen=True, eq=False)(cls)

@@ -72,7 +72,7 @@ class Sparse:
         if index == ():
             return self
         if isinstance(index, tuple) and len(index) == 3 and index[0] is ... and isinstance(index[2], slice) and index[2] == slice(None):
-            return Sparse(self.columns, self.values[index[1]], self.size)
+            return Sparse(self.columns, self.values[..., index[1], :], self.size)
         return np.asarray(self)[index]
 
     def swapaxes(self, first: int, second: int) -> Array:
@@ -89,8 +89,8 @@ def few(matrix: Array | Sparse) -> Sparse:
     """
     if isinstance(matrix, Sparse):
         return matrix
-    columns = np.flatnonzero(np.any(matrix != 0.0, axis=0))
-    return Sparse(columns, np.ascontiguousarray(matrix[:, columns]), matrix.shape[1])
+    columns = np.flatnonzero(np.any(matrix != 0.0, axis=tuple(range(matrix.ndim - 1))))
+    return Sparse(columns, np.ascontiguousarray(matrix[..., columns]), matrix.shape[-1])
 
 
 def below(rows: Iterable[Sparse], size: int) -> Sparse:
@@ -102,11 +102,13 @@ def below(rows: Iterable[Sparse], size: int) -> Sparse:
     [[0.0, 3.0], [0.0, 3.0]]
     """
     parts = list(rows)
-    values = np.zeros((sum(len(part.values) for part in parts), sum(len(part.columns) for part in parts)))
+    batch = np.broadcast_shapes(*(part.values.shape[:-2] for part in parts))
+    counts = [part.values.shape[-2:] for part in parts]
+    values = np.zeros((*batch, *np.sum(counts, axis=0)), dtype=np.result_type(*(part.values for part in parts)))
     row = column = 0
-    for part in parts:
-        values[row : row + len(part.values), column : column + len(part.columns)] = part.values
-        row, column = row + len(part.values), column + len(part.columns)
+    for part, (high, wide) in zip(parts, counts, strict=True):
+        values[..., row : row + high, column : column + wide] = part.values
+        row, column = row + high, column + wide
     return Sparse(np.concatenate([part.columns for part in parts]), values, size)
 
 

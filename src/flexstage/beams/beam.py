@@ -1,4 +1,4 @@
-"""A part as a straight Timoshenko beam: flexibility and inertia along its axis, and the integrals of them."""
+"""Straight Timoshenko beam: flexibility and inertia per length, and their integrals along the axis."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexstage.parts.section import Section
 
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """A beam symmetric about its centre: at each station (..., m, 6), order (x, y, z, rx, ry, rz), `flexibility` and `inertia` per length.
+    """A beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), order (x, y, z, rx, ry, rz).
 
     Flexibility: 1/(E A), k/(G A) twice, twist rate per torque, 1/(E I_y), 1/(E I_z). Inertia: rho A three times, rho I_p, rho I_y, rho I_z.
     """
@@ -27,7 +27,7 @@ class Beam:
     twisting: Twisting
 
     def diagonal(self) -> Array:
-        """The diagonal (..., 6) of the compliance about the centre.
+        """Compute the diagonal (..., 6) of the compliance about the centre.
 
         C_x, C_rx, C_ry, C_rz are integrals of the flexibility; C_y = integral of f_y + x^2 f_rz, C_z = integral of f_z + x^2 f_ry.
         """
@@ -40,7 +40,7 @@ class Beam:
 
 
 def beam(points: Stations, section: Section, material: Material) -> Beam:
-    """The beam of a section given at stations, its ends kept from warping.
+    """Build the beam of a section sampled at stations; warping is restrained at its ends.
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.section import Rectangle
@@ -60,12 +60,12 @@ def beam(points: Stations, section: Section, material: Material) -> Beam:
 
 
 def shear_across(material: Material) -> Array | None:
-    """The material's shear modulus in the plane of x and y (..., 1), where it is another one than in that of x and z."""
+    """The shear modulus in the x-y plane (..., 1) where it differs from the x-z plane (orthotropic material)."""
     return None if material.shear_across is None else _column(material.shear_across)
 
 
 def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting, across: Array | None = None) -> Array:
-    """Flexibility per length (..., m, 6) of a section; moduli of shape (..., 1), `across` that of shear along y where it is another one.
+    """Compute the flexibility per length (..., m, 6) of a section; moduli of shape (..., 1), `across` the one for shear along y.
 
     >>> from flexstage.parts.section import circle
     >>> section = circle(np.ones(1), 1.0)
@@ -79,7 +79,7 @@ def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting
 
 
 def inertia(section: Section, density: Array) -> Array:
-    """Inertia per length (..., m, 6) of a section, rotary inertia included; density of shape (..., 1).
+    """Compute the inertia per length (..., m, 6) of a section, including rotary inertia; density of shape (..., 1).
 
     >>> from flexstage.parts.section import Rectangle
     >>> inertia(Rectangle(np.ones(1), np.ones(1)), np.array([12.0])).tolist()
@@ -90,7 +90,7 @@ def inertia(section: Section, density: Array) -> Array:
 
 
 def _rows(*rows: Array) -> Array:
-    """Rows (..., m) as (..., m, n), each in one piece in memory."""
+    """Stack rows (..., m) to a contiguous array (..., m, n)."""
     return np.moveaxis(np.stack(np.broadcast_arrays(*rows)), 0, -1)
 
 

@@ -1,4 +1,4 @@
-"""Front door: compliance, stiffness and law of any part by beam theory, about its centre and in its link frame.
+"""Compliance, stiffness and part law by beam theory, about the part's centre and in its link frame.
 
 Both ends are rigidly extended to the centre. Compliance takes the wrench at the centre on the second end to the relative twist, second
 minus first.
@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array, first_design
+from flexstage.base.session import SESSION
 from flexstage.base.storage.digest import keep
 from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
@@ -25,17 +25,19 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Elastic, Part, Restricted, inner, material_of
 
 _SINGULAR = 1e-12
-"""Share of a stated stiffness that counts as none: rounding."""
+"""Relative stiffness below which a specified stiffness is singular (rounding)."""
 _NAMED = 1e-6
 _EVERY: Array = np.arange(6)
 
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """What a link does between its bodies: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` freedoms.
+    """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` freedoms.
 
-    `inner` (..., m) [1/s^2] are the squares of the angular frequencies of the modes it has while its ends are held, mass-normalised: m more
-    coordinates of the lumped model. The link's mass is then (..., 12 + m, 12 + m), theirs after those of its ends (absent: none).
+    `inner` (..., m) [1/s^2] are the squared angular frequencies of its mass-normalised fixed-end modes: m more coordinates of the lumped
+    model.
+
+    The mass of the link is then (..., 12 + m, 12 + m), with the modes after the ends. Absent: no modes.
     """
 
     stiffness: Array
@@ -44,10 +46,11 @@ class Law:
 
 
 def compliance(part: Elastic, material: Material | None) -> Array:
-    """Compliance (..., 6, 6) of a part about its centre, rows (x, y, z, rx, ry, rz), SI; diagonal but for a `ComplianceMatrix` part.
+    """Compute the compliance (..., 6, 6) of a part about its centre, rows (x, y, z, rx, ry, rz), SI.
 
-    `material` is needed by notches, necks, leaves and rods. Raises `DesignError` if it is missing, and for a part that states its stiffness
-    and has none in some motion: its compliance does not exist.
+    It is diagonal except for a `ComplianceMatrix`. Notches, necks, leaves and rods need a `material`.
+
+    Raises `DesignError` if the material is missing, or if the part has a specified stiffness that is singular (no compliance exists).
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.rod import Rod
@@ -61,7 +64,7 @@ def compliance(part: Elastic, material: Material | None) -> Array:
 
 
 def stiffness(part: Elastic, material: Material | None) -> Array:
-    """Stiffness (..., 6, 6) of a part about its centre, as stated, or the inverse of its compliance.
+    """Compute the stiffness (..., 6, 6) of a part about its centre: as specified, or the inverse of its compliance.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.rod import Rod
@@ -78,10 +81,12 @@ def stiffness(part: Elastic, material: Material | None) -> Array:
 
 
 def law(part: Part, material: Material | None) -> Law:
-    """The law of any part.
+    """Compute the stiffness and the locked freedoms of any part.
 
-    A `Joint` has no stiffness and locks what is not free. A `Restricted` part starts from K = C^-1: locked rows and columns are deleted,
-    freed ones condensed out, K_ee - K_ef K_ff^-1 K_fe; those without any stiffness are free already. Ordinary parts lock nothing.
+    A `Joint` has no stiffness and locks all freedoms that are not free. Ordinary parts lock nothing.
+
+    A `Restricted` part starts from K = C^-1. Locked rows and columns are deleted. Freed ones are condensed: K_ee - K_ef K_ff^-1 K_fe.
+    Freedoms without any stiffness are free already.
 
     >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
     True
@@ -103,9 +108,9 @@ def law(part: Part, material: Material | None) -> Law:
 
 
 def viscous_damping(part: Part) -> Array | None:
-    """The viscous damping (..., 6, 6) [N s/m] that a part states, about its centre; `None` of a part that states none.
+    """Return the viscous damping (..., 6, 6) [N s/m] of a part about its centre, or `None` if it specifies none.
 
-    A restricted part keeps it in its elastic freedoms.
+    A restricted part keeps the damping of its elastic freedoms.
 
     >>> from flexstage.parts.voice_coil import VoiceCoil
     >>> viscous_damping(VoiceCoil(force_constant=10.0, damping=2.0)).diagonal().tolist()
@@ -119,9 +124,9 @@ def viscous_damping(part: Part) -> Array | None:
     return own if np.any(own) else None
 
 
-@lru_cache(maxsize=32)
+@SESSION.keep(32)
 def held_modes(part: Elastic, material: Material | None) -> tuple[Held, ...]:
-    """The modes of a part while its ends are held, as many as it asks for (`inner_modes`), at the stations of its beam.
+    """Compute the fixed-end modes of a part, `inner_modes` of them, at the stations of its beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -136,20 +141,20 @@ def held_modes(part: Elastic, material: Material | None) -> tuple[Held, ...]:
 
 
 def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
-    """The freedoms that a part locks."""
+    """Return the freedoms that a part locks."""
     if isinstance(part, Joint):
         return others(part.free)
     return others(part.elastic + part.free) if isinstance(part, Restricted) else ()
 
 
 def law_of(part: Part) -> PartLaw | None:
-    """What beam theory knows of a part's kind, that of a restricted part's own; `None` where nothing is known."""
+    """Return the part law of beam theory for the part's kind (of the inner part if restricted), or `None` if there is none."""
     return LAWS.get(inner(part).kind)
 
 
 @keep
 def beam_of(part: Part, material: Material | None) -> Beam:
-    """The part as a straight beam; raises `DesignError` where it needs a material and has none, and where it is not known as a beam.
+    """Build the straight beam of a part; raises `DesignError` if the material is missing or the kind has no beam.
 
     >>> from flexstage.parts.piezo import Piezo
     >>> beam_of(Piezo(stroke=1e-4, stiffness=1e7, length=0.1, diameter=0.01), None).section.is_axisymmetric
@@ -169,7 +174,7 @@ def _law_of(part: Part) -> PartLaw:
 
 
 def _stated(part: Elastic, material: Material | None) -> Array | None:
-    """The stiffness of a part whose law states it, not its compliance."""
+    """The stiffness of a part whose law specifies a stiffness instead of a compliance."""
     known = _law_of(part)
     if known.material_stiffness is not None:
         return known.material_stiffness(part, _required_material(part, material))
@@ -177,12 +182,12 @@ def _stated(part: Elastic, material: Material | None) -> Array | None:
 
 
 def _unknown(part: Part) -> DesignError:
-    what = "its law by beam theory is not known: nobody offers one for this kind"
-    advice = f'Install the package that does ({LAWS.group}), or state its 6x6 (kind = "compliance_matrix")'
+    what = "no beam theory for this kind"
+    advice = f'Install a package that provides one ({LAWS.group}), or specify its 6x6 (kind = "compliance_matrix")'
     return refuse(f"a part of kind {inner(part).kind}", what, advice)
 
 
-@lru_cache(maxsize=32)
+@SESSION.keep(32)
 def _diagonal(part: Elastic, material: Material | None) -> Array:
     own = _law_of(part).diagonal
     return beam_of(part, material).diagonal() if own is None else own(part, _required_material(part, material))
@@ -191,12 +196,12 @@ def _diagonal(part: Elastic, material: Material | None) -> Array:
 def _required_material(part: Part, material: Material | None) -> Material:
     if material is None:
         where = f"{inner(part).kind} of {material_of(part)}"
-        raise refuse(where, "its stiffness was asked for without a material", f"pass the material {material_of(part)}")
+        raise refuse(where, "material missing for the stiffness", f"Pass the material {material_of(part)}")
     return material
 
 
 def _regular(part: Elastic, stated: Array, freedoms: Array = _EVERY) -> Array:
-    """A stiffness (..., k, k) in some freedoms that has an inverse: NaN for designs where it has none, refused where the first has none."""
+    """A non-singular stiffness (..., k, k) in some freedoms: NaN for singular designs; raises if the first design is singular."""
     size = np.sqrt(np.max(np.abs(np.real(stated)), axis=-1))
     size = np.where(size > 0.0, size, 1.0)
     _, values, motions = np.linalg.svd(np.real(stated) / size[..., :, None] / size[..., None, :])
@@ -204,13 +209,13 @@ def _regular(part: Elastic, stated: Array, freedoms: Array = _EVERY) -> Array:
     if np.any(first_design(none, 1)):
         moved = np.max(np.abs(first_design(motions, 2)[first_design(none, 1)]), axis=0) > _NAMED
         names = ", ".join(ALL[index].value for index in freedoms[moved])
-        what = f"it has no stiffness in some motion of {names}, so that its compliance does not exist"
-        raise refuse(f"a part of kind {part.kind}", what, "State a stiffness there, or use the lumped model, which needs none")
+        what = f"singular stiffness in {names}, so that the compliance does not exist"
+        raise refuse(f"a part of kind {part.kind}", what, "Specify a stiffness there, or use the lumped model, which needs none")
     return np.where(np.any(none, axis=-1, keepdims=True)[..., None], np.nan, stated)
 
 
 def _stiff_among(freedoms: Array, stiffness: Array) -> Array:
-    """Those of the freedoms in which any design has stiffness."""
+    """The given freedoms in which any design has stiffness."""
     rows = np.any(np.real(stiffness[..., freedoms, :]) != 0.0, axis=-1)
     return freedoms[np.any(rows, axis=tuple(range(rows.ndim - 1)))]
 

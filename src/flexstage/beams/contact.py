@@ -1,4 +1,4 @@
-"""Contacts by Hertz and Mindlin, about their preload."""
+"""Hertz-Mindlin contacts, linearised about their preload."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Cruciform torsion hinges by beam theory, with ends that cannot warp."""
+"""Cruciform torsion hinges by beam theory, with restrained warping at the ends."""
 
 from __future__ import annotations
 
@@ -20,21 +20,24 @@ from flexstage.parts.section import Rectangle
 
 @dataclass(frozen=True, eq=False)
 class _HalfCross(Rectangle):
-    """One of both leaves, with half of the torsion constant of the `whole`."""
+    """One of the two leaves, with half of the torsion constant of the `whole` hinge."""
 
     whole: Number = 0.0
 
     @cached_property
     def torsion(self) -> Number:
-        """Half of the whole's [m^4]."""
+        """Half of the torsion constant of the whole hinge [m^4]."""
         return 0.5 * self.whole
 
 
 def cruciform_beam(part: Cruciform, material: Material) -> Beam:
-    """The hinge as a Timoshenko beam whose leaves share a torque equally, each with the restrained warping of `beams.torsion`.
+    """Build the Timoshenko beam of a cruciform hinge: its leaves share the torque equally, with the restrained warping of `beams.torsion`.
 
-    Thin leaves end in Vlasov's torsion (Thin-Walled Elastic Beams, 1961): K = G J / L / (1 - tanh(k L / 2) / (k L / 2)),
-    k^2 = G J / (E C_w). Not counted: contraction that rigid ends prevent.
+    The limit of thin leaves is Vlasov's torsion (Thin-Walled Elastic Beams, 1961):
+
+    K = G J / L / (1 - tanh(k L / 2) / (k L / 2)), k^2 = G J / (E C_w).
+
+    The contraction that rigid ends prevent is neglected.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> hinge = Cruciform("steel", length=0.03, thickness=0.001, width=0.01)
@@ -50,9 +53,9 @@ def cruciform_beam(part: Cruciform, material: Material) -> Beam:
 
 
 def torsional_buckling(part: Cruciform, material: Material) -> Number:
-    """Compression at which its leaves twist, G J A / I_p [N], whatever its length (Timoshenko & Gere, Theory of Elastic Stability, 5.4).
+    """Compute the torsional buckling load G J A / I_p [N], for any length (Timoshenko & Gere, Theory of Elastic Stability, 5.4).
 
-    Warping restrained at the ends makes it larger, and is not counted.
+    Restrained warping at the ends raises this load; the increase is neglected.
     """
     section = part.throat
     return material.shear * section.torsion * section.area / section.polar

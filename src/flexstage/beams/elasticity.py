@@ -1,8 +1,12 @@
-"""What three-dimensional elasticity finds beside beam theory, by laws fitted to finite elements: which error to expect of a hinge.
+"""Deviation of beam theory from three-dimensional elasticity: the expected model error of a hinge, fitted to finite elements.
 
-Every law is the compliance of beam theory changed by what it leaves out, term by term: what the blocks yield at the roots (over the root of
-t/R), contraction that wide hinges and clamped ends prevent (by Poisson's ratio squared, over the width), shear that clamped ends change.
-`python -m tools.validation.beam_errors` computes the hinges, fits the numbers and prints both.
+Each law is the compliance of beam theory plus the neglected terms:
+
+- root compliance of the blocks (proportional to the root of t/R),
+- contraction that wide hinges and clamped ends prevent (Poisson's ratio squared, over the width),
+- shear that clamped ends change.
+
+`python -m tools.validation.beam_errors` computes the hinges, fits the coefficients and prints both.
 """
 
 from __future__ import annotations
@@ -22,9 +26,9 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True, eq=False)
 class Slot:
-    """A hinge by its numbers (...): thickness, width, half its length, the axes of its arcs, Poisson's ratio.
+    """Dimensions of a hinge (...): thickness, width, half length, axes of its arcs, Poisson's ratio.
 
-    `beam` (..., 6) is the diagonal of its compliance by beam theory times Young's modulus. Hinges without arcs have no use for their axes.
+    `beam` (..., 6) is the diagonal of its compliance by beam theory times Young's modulus. Hinges without arcs do not use the arc axes.
     """
 
     thickness: Array
@@ -42,12 +46,12 @@ class Slot:
 
     @property
     def root(self) -> Array:
-        """The root of t/R."""
+        """Square root of t/R."""
         return np.sqrt(self.thickness / self.radius)
 
     @property
     def flatness(self) -> Array:
-        """Height of the arc over its half length."""
+        """Height of the arc over the half length."""
         return self.across / self.along
 
     @property
@@ -57,27 +61,27 @@ class Slot:
 
     @property
     def shear_share(self) -> Array:
-        """What shear has of the compliance across, by beam theory."""
+        """Fraction of the transverse compliance that is due to shear, by beam theory."""
         return 2.4 * (1.0 + self.poisson) * self.beam[..., 0]
 
     def plane_strain(self, scale: float, power: float, size: Array) -> Array:
-        """1 - nu^2 where the width prevents contraction over a `size`, 1 where it does not, and in between."""
+        """Plane-strain factor: 1 - nu^2 where the width prevents contraction over a `size`, 1 where it does not, smooth in between."""
         return 1.0 - self.poisson**2 / (1.0 + (scale * size / self.width) ** power)
 
 
 Law = Callable[[Slot, Numbers], Array]
-"""The compliance along or about an axis times Young's modulus, from the numbers fitted."""
+"""Compliance along or about an axis times Young's modulus, as a function of the fitted coefficients."""
 
 
 def notch_x(slot: Slot, p: Numbers) -> Array:
-    """Tension: what the roots yield, d(t/R) / (E b), and contraction prevented."""
+    """Tension: the root compliance d(t/R) / (E b), and prevented contraction."""
     root, flat = slot.root, slot.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return slot.plane_strain(p[3], p[4], slot.half) * (slot.beam[..., 0] + yielded / slot.width)
 
 
 def notch_y(slot: Slot, p: Numbers) -> Array:
-    """Across: the roots, bending with contraction prevented, and the block that was taken off as a beam although it is a plate."""
+    """Transverse: the roots, bending with prevented contraction, and the block, subtracted as a beam although it is a plate."""
     root, flat = slot.root, slot.flatness
     circle = (p[0] + p[1] * root + p[2] * root**2 + p[3] * root**3) * flat ** p[9]
     yielded = circle + (flat - 1.0) * (p[10] + p[11] * root + p[12] * root**2)
@@ -87,7 +91,7 @@ def notch_y(slot: Slot, p: Numbers) -> Array:
 
 
 def notch_ry(slot: Slot, p: Numbers) -> Array:
-    """Bending about the thickness: as tension; narrow hinges yield less at their roots."""
+    """Bending about the thickness, as for tension; the roots of narrow hinges are stiffer."""
     root, flat = slot.root, slot.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
     share = 1.0 / (1.0 + p[5] * (slot.along / slot.width) ** p[6])
@@ -95,38 +99,38 @@ def notch_ry(slot: Slot, p: Numbers) -> Array:
 
 
 def notch_rz(slot: Slot, p: Numbers) -> Array:
-    """Bending: the roots turn, in proportion to t/R at first, and more where the material contracts more."""
+    """Bending: the root rotation, proportional to t/R for small t/R, and larger for a larger Poisson's ratio."""
     neck = np.sqrt(slot.thickness * slot.radius)
     turned = _root_rotation(slot, p) * slot.flatness ** p[4] * (1.0 + p[5] * (slot.poisson - 0.3))
     return slot.plane_strain(p[2], p[3], neck) * (slot.beam[..., 5] + turned)
 
 
 def fillet_y(slot: Slot, p: Numbers) -> Array:
-    """Across a fillet: a plate where it is wide, roots that turn at their arms, and the block as across a notch."""
+    """Transverse compliance of a fillet: plate action if wide, root rotation at its arms, and the block as for a notch."""
     bent = _plate_share(slot, shear_factor, p[3], p[4]) * (slot.beam[..., 1] - slot.shear_share)
     turned = _root_rotation(slot, p) * (slot.half - p[2] * slot.along) ** 2
     return bent + slot.shear_share * (1.0 + p[5] * slot.root) + turned - _block_as_plate(slot, p[6], p[7])
 
 
 def fillet_rz(slot: Slot, p: Numbers) -> Array:
-    """Bending of a fillet: a plate where it is wide, and roots that turn."""
+    """Bending of a fillet: plate action if wide, and root rotation."""
     return _plate_share(slot, moment_factor, p[2], p[3]) * (slot.beam[..., 5] + _root_rotation(slot, p))
 
 
 def _block_as_plate(slot: Slot, share: float, scale: float) -> Array:
-    """What a beam of block about as long as high yields more than a plate of it: so much too much is taken off beside a hinge."""
+    """Excess compliance of the block as a beam over the block as a plate, which is subtracted too much next to a hinge."""
     block = 2.0 / slot.width * (12.0 / slot.height**2 * (slot.half + 0.5 * slot.height) ** 2 + 1.0)
     return slot.poisson**2 * share / (1.0 + (scale * slot.height / slot.width) ** 2) * block
 
 
 def _root_rotation(slot: Slot, p: Numbers) -> Array:
-    """What the roots turn: as those of the circular notch with the same throat."""
+    """Root rotation, equal to that of the circular notch with the same throat."""
     circle = np.asarray(wu_zhou_rotation(1.0, slot.width, slot.thickness, slot.radius))
     return circle * (p[0] * slot.root**2 + p[1] * slot.root**3)
 
 
 def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
-    """Rotational compliance of a right-circular notch about z [rad/(N m)] (Wu & Zhou, Rev. Sci. Instrum. 73, 2002), s = R/t.
+    """Compute the rotational compliance of a right-circular notch about z [rad/(N m)] (Wu & Zhou, Rev. Sci. Instrum. 73, 2002), s = R/t.
 
     >>> float(f"{wu_zhou_rotation(200e3, 10.0, 1.0, 5.0):.7g}")
     1.539997e-05
@@ -138,7 +142,7 @@ def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Nu
 
 
 def bar_x(slot: Slot, p: Numbers) -> Array:
-    """Tension between rigid faces, which hold the contraction across the width and the thickness."""
+    """Tension between rigid faces, which restrain the contraction across the width and the thickness."""
     wide, thick = _proportions(slot)
     return slot.beam[..., 0] * (1.0 - slot.poisson**2 * (_saturate(p[0] * wide) + _saturate(p[1] * thick)))
 
@@ -158,36 +162,36 @@ def bar_ry(slot: Slot, p: Numbers) -> Array:
 
 
 def bar_y(slot: Slot, p: Numbers) -> Array:
-    """Across a bar that beam theory has without plate action."""
+    """Transverse compliance of a bar for which beam theory has no plate action."""
     return slot.beam[..., 1] * (_plate_share(slot, shear_factor, 1.0, p[0]) - slot.poisson**2 * p[1] * _proportions(slot)[1])
 
 
 def bar_rz(slot: Slot, p: Numbers) -> Array:
-    """Bending of a bar that beam theory has without plate action."""
+    """Bending of a bar for which beam theory has no plate action."""
     return slot.beam[..., 5] * _plate_share(slot, moment_factor, 1.0, p[0])
 
 
 def _plate_share(slot: Slot, factor: Callable[[Number, Number], Number], scale: float, power: float) -> Array:
-    """What a plate has of a beam's compliance, less where the width is no more than some thicknesses."""
+    """Compliance of a plate over that of a beam; the effect decreases if the width is only a few thicknesses."""
     wide = scale * _proportions(slot)[0]
     stiffer = np.asarray(factor(1.0 / wide, slot.poisson))
     return 1.0 - (1.0 - 1.0 / stiffer) / (1.0 + power * slot.thickness / slot.width)
 
 
 def leaf_y(slot: Slot, p: Numbers) -> Array:
-    """Across a leaf, plate action counted."""
+    """Transverse compliance of a leaf, including plate action."""
     return slot.beam[..., 1] * (1.0 - p[0] * slot.poisson**2 * _proportions(slot)[0])
 
 
 def leaf_rx(slot: Slot, p: Numbers) -> Array:
-    """Torsion of a leaf: bending of its strips, in which the ends restrain contraction, from 1 to 1 / (1 - nu^2) stiffer with the width."""
+    """Torsion of a leaf: its strips bend with contraction restrained at the ends, from 1 to 1 / (1 - nu^2) stiffer with the width."""
     wide, _ = _proportions(slot)
     restrained = slot.poisson**2 / (1.0 - slot.poisson**2)
     return slot.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
 
 
 def leaf_rz(slot: Slot, p: Numbers) -> Array:
-    """Bending of a leaf, plate action counted."""
+    """Bending of a leaf, including plate action."""
     return slot.beam[..., 5] * (1.0 - p[0] * slot.poisson**2 * _proportions(slot)[0])
 
 
@@ -197,12 +201,12 @@ def _proportions(slot: Slot) -> tuple[Array, Array]:
 
 
 def _saturate(share: Array) -> Array:
-    """A share that grows evenly and ends at one."""
+    """A fraction that grows linearly at first and saturates at one."""
     return share / (1.0 + share**3) ** (1.0 / 3.0)
 
 
 def toroidal(slot: Slot, p: Numbers, index: int) -> Array:
-    """Compliance of a toroidal neck: larger by exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
+    """Compute the factor of a toroidal neck: larger compliance by exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
     return slot.beam[..., index] * np.exp(slot.root**2 * (p[0] + p[1] * slot.root + p[2] * (slot.poisson - 0.3)))
 
 
@@ -252,4 +256,4 @@ LAWS: Mapping[str, Mapping[str, tuple[Law, Numbers]]] = MappingProxyType(
         },
     }
 )
-"""By family and axis, the law and its numbers."""
+"""Fitted law and coefficients by family and axis."""

@@ -1,4 +1,4 @@
-"""Bare force actuators: no stiffness, half of their mass on each body."""
+"""Bare force actuators: no stiffness, half of the mass on each body."""
 
 from flexstage.beams.law import PartLaw
 

@@ -1,4 +1,4 @@
-"""Geometric stiffness of parts: what the forces they carry add to the stiffness between their ends."""
+"""Geometric stiffness of parts: the stiffness between their ends due to the forces they carry."""
 
 from __future__ import annotations
 
@@ -18,17 +18,19 @@ from flexstage.parts.shape import Shaped
 
 ENDS = 12
 _SLENDER, _STOUT = (8, 8, 8), (0, 2, 2)
-"""Numbers of inner shapes of the twist about x and of the bending about y and z: of leaves and rods, of all other parts."""
+"""Numbers of inner shapes of twist about x and of bending about y and z: for leaves and rods; for all other parts."""
 _CROSS = np.zeros((3, 3, 3))
 _CROSS[[0, 1, 2], [1, 2, 0], [2, 0, 1]], _CROSS[[0, 1, 2], [2, 0, 1], [1, 2, 0]] = 1.0, -1.0
 
 
 @dataclass(frozen=True, eq=False)
 class Geometric:
-    """Geometric stiffness of a part for the twists of its first and second end, both taken at its centre, and its inner bending.
+    """Geometric stiffness of a part for the twists of its first and second end, both taken at its centre, and for its inner bending.
 
-    `per_force` (..., 6, 12 + k, 12 + k) per unit of each component of the wrench at its centre on the second end, in the link frame;
-    `inner` (..., k) is the elastic stiffness of the k inner bending shapes, which no end feels. `half` (...) is half the length [m].
+    `per_force` (..., 6, 12 + k, 12 + k) is per unit of each component of the wrench at the centre on the second end, in the link frame.
+
+    `inner` (..., k) is the elastic stiffness of the k inner bending shapes, which do not move the ends. `half` (...) is half the length
+    [m].
     """
 
     per_force: Array
@@ -38,12 +40,12 @@ class Geometric:
 
 @keep
 def geometric(part: Part, material: Material | None) -> Geometric:
-    """Geometric stiffness of any part; one without a drawn length (a compliance matrix, a joint) is taken as a point.
+    """Compute the geometric stiffness of any part; a part without length (a compliance matrix, a joint) is a point.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.06, thickness=0.0003, width=0.02)
-    >>> found = geometric(leaf, Material(young=200e9, poisson=0.0, density=8000.0))
-    >>> round(float(found.per_force[0, 1, 1] * 0.06), 3)  # 6 N / (5 L) of the consistent matrix
+    >>> result = geometric(leaf, Material(young=200e9, poisson=0.0, density=8000.0))
+    >>> round(float(result.per_force[0, 1, 1] * 0.06), 3)  # 6 N / (5 L) of the consistent matrix
     1.2
     """
     own = inner(part)
@@ -55,22 +57,22 @@ def geometric(part: Part, material: Material | None) -> Geometric:
 
 
 def foreshortening(part: Part, material: Material | None) -> Array:
-    """Second-order deformation of a part by its own bending and twist: 1/2 e^T G e, e its relative twist at its centre; G (6, 6, 6).
+    """Compute the second-order deformation 1/2 e^T G e by bending and twist, e the relative twist at the centre; G (6, 6, 6).
 
-    K_g of its wrench w is then that of a bushing and sum w_i G_i. Zero of parts without a drawn length; its own stretch is left out.
+    K_g for the wrench w is then K_g of a bushing plus sum w_i G_i. Zero for parts without length; the axial stretch is neglected.
     """
     own, axis = geometric(part, material), np.eye(3)[0]
     result = own.per_force[..., 6:ENDS, 6:ENDS] - _of_point().per_force[:, 6:, 6:]
     if not np.any(own.half):
         return np.zeros_like(result)
-    both = np.einsum("ia,b->iab", np.eye(3), axis)  # forces at +-half turn with the bodies that carry them
+    both = np.einsum("ia,b->iab", np.eye(3), axis)  # end forces on the bodies at +-half
     result[..., :3, 3:, 3:] -= own.half * (axis[:, None, None] * np.eye(3) - 0.5 * (both + np.swapaxes(both, -1, -2)))
     result[..., 0, :] = result[..., :, 0] = 0.0
     return result
 
 
 def _of_point() -> Geometric:
-    """A bushing: its force acts in the mean of the frames of both ends, its moment across the step of the rotation."""
+    """Bushing: its force acts in the mean frame of both ends, its moment across the step of rotation."""
     mean, step = np.zeros((3, ENDS)), np.zeros((3, ENDS))
     mean[:, 3:6] = mean[:, 9:] = 0.5 * np.eye(3)
     step[:, :3], step[:, 6:9] = -np.eye(3), np.eye(3)
@@ -82,10 +84,9 @@ def _of_point() -> Geometric:
 
 
 def _of_strut(length: Array) -> Geometric:
-    """A strut that turns about both ends, at +-L/2: its axial force F moves with them, F/L |D|^2 / 2, D what they shift across its axis.
+    """Strut that turns about both ends, at +-L/2: its axial force F moves with them, F/L |D|^2 / 2, D the transverse shift between them.
 
-    As everywhere, ends are taken at the centre: the arms to the ends turn too and add -F L/4 theta^2 each. What else it passes acts as in
-    `_of_point`.
+    Ends are taken at the centre: the arms to the ends turn too and add -F L/4 theta^2 each. All other components act as in `_of_point`.
     """
     arm = 0.5 * length[..., None, None]
     step, lever = np.zeros((2, ENDS)), np.zeros((2, ENDS))
@@ -103,8 +104,11 @@ def _of_strut(length: Array) -> Geometric:
 def _of_beam(beam: Beam, inner: tuple[int, int, int]) -> Geometric:
     """Second variation of the exact beam's energy about the straight, loaded beam.
 
-    With the rotation theta(x) of its sections in the shapes of linear bending and torsion, and resultants N, Q, m(x) = m_c - x e_x x Q:
-    1/2 int N (theta_y^2 + theta_z^2 + r^2 theta_x'^2) - theta_x (Q . theta) - m . (theta x theta') dx, r the polar radius of the section.
+    The rotation theta(x) of the sections has the shapes of linear bending and torsion, with resultants N, Q, m(x) = m_c - x e_x x Q:
+
+    1/2 int N (theta_y^2 + theta_z^2 + r^2 theta_x'^2) - theta_x (Q . theta) - m . (theta x theta') dx,
+
+    with r the polar radius of the section.
     """
     position, weight, turn, bend, stiffness = _shapes(beam, inner)
     outer, mixed, moved = _sum(weight, turn, turn), _sum(weight, turn, bend), _sum(weight * position, turn, bend)
@@ -130,12 +134,13 @@ def _sum(weight: Array, first: Array, second: Array) -> Array:
 
 
 def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Array, Array, Array]:
-    """Stations and weights (..., s), rotation and rate (..., s, 3, 12 + k) of sections, stiffness (..., k) of inner shapes.
+    """Stations and weights (..., s), rotation and rate (..., s, 3, 12 + k) of sections, stiffness (..., k) of the inner shapes.
 
-    Bending by both ends is f (a + b x) with f the flexibility, twist f a. Inner shapes f p(x), p the next polynomials orthogonal to these
-    and to one another under f, move no end. With them column loads are right to 1e-4, and those of lateral buckling, in which bending in
-    two planes and twist are coupled, to 1 %, mostly to 1e-3. With the ends' shapes alone columns are 1 % off where one end is guided, 20 %
-    where both are pinned.
+    Bending by both ends is f (a + b x) with f the flexibility, twist is f a. The inner shapes f p(x) move no end: p are the next
+    polynomials orthogonal to the former under f.
+
+    Their error is 1e-4 for column loads. For lateral buckling, in which bending in two planes and twist are coupled, it is 1 %, mostly
+    1e-3. Without inner shapes columns are wrong by 1 % if one end is guided, by 20 % if both ends are pinned.
     """
     points = beam.points
     half = points.position
@@ -169,9 +174,9 @@ def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Arra
 
 
 def _inner(beam: Beam, flexible: Array, degrees: range) -> Iterator[tuple[int, Array, Array]]:
-    """Inner shapes of the rate of rotation over the flexibility at the stations, and the elastic stiffness of each.
+    """Inner shapes of the rotation rate over the flexibility at the stations, and their elastic stiffness.
 
-    Each is orthogonal to all polynomials of lower degree: those of the part's ends, and the inner ones before it.
+    Each shape is orthogonal to all polynomials of lower degree: those of the part's ends, and the previous inner ones.
     """
     points, half = beam.points, beam.points.position
     known: list[Array] = []
@@ -185,7 +190,7 @@ def _inner(beam: Beam, flexible: Array, degrees: range) -> Iterator[tuple[int, A
 
 
 def _integral(beam: Beam, rate: Array, *, odd: bool) -> Array:
-    """Integral from the first end, at -x and x, of a rate that is even or odd and whose whole integral is zero."""
+    """Integral from the first end, at -x and x, of an even or odd rate whose whole integral is zero."""
     running = beam.points.running(rate)
     return _both(running - running[..., -1:]) if odd else np.concatenate([-running, running], axis=-1)
 
@@ -195,7 +200,7 @@ def _mirror(half: Array, *, odd: bool) -> Array:
 
 
 def _of_step(beam: Beam, axis: int) -> tuple[Array, Array]:
-    """Share accumulated from the first end, and its rate, of a unit step of rotation between the ends."""
+    """Accumulated fraction from the first end, and its rate, of a unit step of rotation between the ends."""
     flexible = beam.flexibility[..., axis]
     running = beam.points.running(flexible)
     share = running / (2.0 * running[..., -1:])
@@ -203,7 +208,7 @@ def _of_step(beam: Beam, axis: int) -> tuple[Array, Array]:
 
 
 def _step(turn: Array, bend: Array, angles: Array, rates: Array, *, axis: int, column: int) -> None:
-    """Enter a shape of the relative motion `column` that turns about `axis`: plus for the second end, minus for the first."""
+    """Enter a shape of the relative motion `column` with a rotation about `axis`: plus for the second end, minus for the first."""
     for target, values in ((turn, angles), (bend, rates)):
         target[..., axis, column] -= values
         target[..., axis, column + 6] += values

@@ -8,7 +8,7 @@ from flexstage.parts.compliance_matrix import ComplianceMatrix
 
 
 def given_compliance(part: ComplianceMatrix) -> Array:
-    """The stated compliance (..., 6, 6) about the centre.
+    """Return the specified compliance (..., 6, 6) about the centre.
 
     >>> given_compliance(ComplianceMatrix(tuple(tuple(float(i == j) for j in range(6)) for i in range(6)), free=())).trace()
     np.float64(6.0)

@@ -1,16 +1,19 @@
-"""Modes of prismatic parts while both ends are held: bending across the part, and twist.
+"""Fixed-end modes of prismatic parts (Ritz's method): transverse bending, and twist.
 
-Ritz's method with polynomials that vanish at both ends, as many more than modes are asked for that the lowest are right to 1e-4 or
-better. Bending is Timoshenko's: deflection w, rotation psi of the section. A plate (Kirchhoff's) also bends across its width: its
-deflection is w, or phi z in twist, plus Legendre polynomials of even degree, or odd, in z, which its clamped ends forbid,
+The polynomials vanish at both ends; their number exceeds the requested modes so that the lowest modes are right to 1e-4 or better. Bending
+follows Timoshenko: deflection w, section rotation psi.
+
+A plate (Kirchhoff) also bends across its width. Its deflection is w (phi z in twist) plus Legendre polynomials of even (odd) degree in z,
+zero at the clamped ends,
 
     2 U = integral of D (w_xx^2 + 2 nu w_xx w_zz + w_zz^2 + 2 (1 - nu) w_xz^2) + S (w' - psi)^2 dx,   D = E t^3 / (12 (1 - nu^2)),
 
-with psi' for the w_xx of the mean and S the shear stiffness. A narrow one bends with E I, a short wide one with E I / (1 - nu^2). Shear at
-its edges makes it softer in twist: 2 (1 - nu) D b is taken as G J of its section. A beam twists by 2 U = integral of G J phi'^2 + E C_w
-phi''^2 dx, with phi' = 0 at ends that cannot warp.
+with psi' for the w_xx of the mean and S the shear stiffness. A narrow plate bends with E I, a short wide one with E I / (1 - nu^2). Shear
+at its edges reduces the twist stiffness: 2 (1 - nu) D b is replaced with G J of its section.
 
-A complex step in any number passes through the modes to first order, as they are simple.
+A beam twists by 2 U = integral of G J phi'^2 + E C_w phi''^2 dx, with phi' = 0 at ends with restrained warping.
+
+The modes are simple, so that a complex step in any number passes through them to first order.
 """
 
 from __future__ import annotations
@@ -26,16 +29,16 @@ from numpy.polynomial import legendre
 from flexstage.base.number import Array, Number
 
 _MORE = 14
-"""Polynomials a field, beside as many as modes are asked for."""
+"""Polynomials per field in addition to the number of requested modes."""
 _EVEN, _ODD = (2, 4, 6), (1, 3, 5)
 """Degrees of the polynomials across a plate."""
 _FIRST_LOBE = -0.9
-"""Where a mode's first lobe is positive, of half the length."""
+"""Position in the first lobe of a mode that fixes its sign, over half the length."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """What a leaf has beside a beam: its `width` b and Poisson's ratio; a beam of rigidity E I has D b = E I / (1 - nu^2)."""
+    """Plate data of a leaf: its `width` b and Poisson's ratio; a plate of beam rigidity E I has D b = E I / (1 - nu^2)."""
 
     width: Number
     poisson: Number
@@ -55,9 +58,9 @@ class Bending:
 
 @dataclass(frozen=True, eq=False)
 class Torsion:
-    """A part of `length` that twists: `rigidity` G J, `warping` E C_w (absent: its ends may warp), inertia and rho C_w per length.
+    """A part of `length` that twists: `rigidity` G J, `warping` E C_w (absent: free warping), inertia and rho C_w per length.
 
-    As a `plate` it has D b^3 / 12 for its warping, and polynomials of higher degree across its width.
+    As a `plate` its warping stiffness is D b^3 / 12, with polynomials of higher degree across its width.
     """
 
     length: Number
@@ -70,9 +73,9 @@ class Torsion:
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """Modes of unit modal mass: `squares` (..., n) of their angular frequencies [1/s^2], motion and rotation of sections (..., n, s).
+    """Modes of unit modal mass: squared angular frequencies `squares` (..., n) [1/s^2], displacement and rotation of sections (..., n, s).
 
-    `axis` tells what moves: 1 and 2 along y and z, with the rotation dw/dx of the section; 3 about x, without.
+    `axis`: 1 and 2 for deflections along y and z, with the section rotation dw/dx; 3 for twist about x, without it.
     """
 
     axis: int
@@ -82,9 +85,9 @@ class Held:
 
 
 def held_bending(axis: int, part: Bending, count: int, stations: Array) -> Held:
-    """The first `count` modes of a part that bends along y or z (`axis` 1, 2), at stations (s,) of its half length, from -1 to 1.
+    """Compute the first `count` fixed-end bending modes along y or z (`axis` 1, 2), at stations (s,) from -1 to 1 over the half length.
 
-    Against Euler's beam, clamped at both ends, whose frequencies are 22.3733, 61.6728, 120.903 times (E I / (rho A L^4))^(1/2):
+    Compared with Euler's clamped-clamped beam, whose frequencies are 22.3733, 61.6728, 120.903 times (E I / (rho A L^4))^(1/2):
 
     >>> slender = Bending(length=1.0, rigidity=1.0, shear=1e9, mass=1.0, rotary=0.0)
     >>> (held_bending(1, slender, 3, np.zeros(1)).squares ** 0.5).round(3).tolist()
@@ -114,7 +117,7 @@ def held_bending(axis: int, part: Bending, count: int, stations: Array) -> Held:
 
 
 def held_twist(part: Torsion, count: int, stations: Array) -> Held:
-    """The first `count` modes of a part that twists, at stations (s,) of its half length, from -1 to 1.
+    """Compute the first `count` fixed-end twist modes, at stations (s,) from -1 to 1 over the half length.
 
     >>> rod = Torsion(length=1.0, rigidity=1.0, inertia=1.0)
     >>> (held_twist(rod, 3, np.zeros(1)).squares ** 0.5 / np.pi).round(9).tolist()
@@ -140,8 +143,8 @@ def held_twist(part: Torsion, count: int, stations: Array) -> Held:
 
 
 def _edges(part: Torsion, warping: Number) -> Number:
-    """G J over that of a plate without its edges, 2 (1 - nu) D b."""
-    assert part.plate is not None  # noqa: S101  (asked of plates alone)
+    """G J over the twist stiffness 2 (1 - nu) D b of a plate without edge shear."""
+    assert part.plate is not None  # noqa: S101  (plates only)
     return part.rigidity * part.plate.width * part.plate.width / (24.0 * (1.0 - part.plate.poisson) * warping)
 
 
@@ -149,7 +152,7 @@ def _edges(part: Torsion, warping: Number) -> Number:
 class _Across:
     """Integrals over [-1, 1] of Legendre polynomials across a plate: squares (n,), products (n, n) of first and second derivatives.
 
-    `mixed` (n, n) are those of each with the second derivative of another, `curling` (n,) of the second derivative alone.
+    `mixed` (n, n) are products of values and second derivatives, `curling` (n,) integrals of the second derivatives.
     """
 
     square: Array
@@ -170,11 +173,11 @@ def _across(degrees: tuple[int, ...]) -> _Across:
 def _plate_blocks(
     basis: _Basis, degrees: tuple[int, ...], rigidity: Number, part: Bending | Torsion, *, first: int, shear: Number = 1.0
 ) -> list[dict[tuple[int, int], tuple[Number, Array]]]:
-    """Kirchhoff's energy of fields across a plate, `first` the place of the first one: `rigidity` is D times their scale squared.
+    """Kirchhoff energy of fields across a plate, the first at index `first`: `rigidity` is D times the squared scale of the fields.
 
-    `shear` is a factor on what twisting costs.
+    `shear` is a factor on the twist energy.
     """
-    assert part.plate is not None  # noqa: S101  (asked of plates alone)
+    assert part.plate is not None  # noqa: S101  (plates only)
     across, half, poisson, side = _across(degrees), 0.5 * part.length, part.plate.poisson, 0.5 * part.plate.width
     blocks: list[dict[tuple[int, int], tuple[Number, Array]]] = []
     for one, other in itertools.combinations_with_replacement(range(len(degrees)), 2):
@@ -191,14 +194,14 @@ def _plate_blocks(
 
 
 def join(arrays: Iterable[Array]) -> Array:
-    """Arrays one after another along their last axis, the others broadcast.
+    """Concatenate arrays along their last axis, with the other axes broadcast.
 
     >>> join([np.ones((2, 1)), np.zeros(2)]).tolist()
     [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
     """
-    found = tuple(arrays)
-    batch = np.broadcast_shapes(*(each.shape[:-1] for each in found))
-    return np.concatenate([np.broadcast_to(each, (*batch, each.shape[-1])) for each in found], axis=-1)
+    parts = tuple(arrays)
+    batch = np.broadcast_shapes(*(each.shape[:-1] for each in parts))
+    return np.concatenate([np.broadcast_to(each, (*batch, each.shape[-1])) for each in parts], axis=-1)
 
 
 def _signed(axis: int, squares: Array, moved: Array, turned: Array | None, first: Array) -> Held:
@@ -208,7 +211,7 @@ def _signed(axis: int, squares: Array, moved: Array, turned: Array | None, first
 
 @dataclass(frozen=True, eq=False)
 class _Basis:
-    """Polynomials (series, number) in Legendre's on [-1, 1], and their derivatives."""
+    """Polynomials (series, number) in Legendre form on [-1, 1], and their derivatives."""
 
     series: tuple[Array, ...]
 
@@ -224,7 +227,7 @@ class _Basis:
 
 @functools.cache
 def _basis(size: int, folds: int) -> _Basis:
-    """Integrals of Legendre polynomials, `folds` times, that vanish at both ends with all derivatives below."""
+    """Legendre polynomials integrated `folds` times: they vanish at both ends with all derivatives of lower order."""
     series = np.eye(size, k=0)
     series = np.vstack([np.zeros((folds, size)), series])
     for _ in range(folds):
@@ -238,7 +241,7 @@ def _gauss(count: int) -> tuple[Array, Array]:
 
 
 def _matrix(blocks: list[dict[tuple[int, int], tuple[Number, Array]]], fields: int, size: int) -> Array:
-    """The symmetric matrix of blocks (field, field), each a number (...) times a matrix; several of one place add up."""
+    """Assemble the symmetric matrix of blocks (field, field), each a number (...) times a matrix; equal positions add up."""
     entries = [(place, np.asarray(number)[..., None, None] * matrix) for block in blocks for place, (number, matrix) in block.items()]
     batch = np.broadcast_shapes(*(matrix.shape[:-2] for _, matrix in entries))
     result = np.zeros((*batch, fields * size, fields * size), dtype=np.result_type(*(matrix for _, matrix in entries)))
@@ -265,7 +268,7 @@ def _modes(stiffness: Array, inertia: Array, count: int) -> tuple[Array, Array]:
 
 
 def _stepped(stiff: Array, heavy: Array, values: Array, vectors: Array) -> tuple[Array, Array]:
-    """M v = mu K v with v^T K v = 1, with the imaginary parts that those of K and M make: by the bordered system of each simple mode."""
+    """Eigenpairs M v = mu K v, v^T K v = 1, to first order in the imaginary parts of K and M, by a bordered system per mode."""
     steps, turns = [], []
     for number in range(values.shape[-1]):
         value, vector = values[..., number, None, None], vectors[..., number : number + 1]

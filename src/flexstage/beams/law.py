@@ -1,4 +1,4 @@
-"""What beam theory knows of a kind of part, and the register of it. `beams` fills it; no entry means that nothing is known."""
+"""Part laws of beam theory by kind, and their register. `beams` fills it; kinds without an entry are unknown."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from flexstage.beams.beam import Beam
 from flexstage.beams.held import Held
 from flexstage.parts.material import Material
 
-_CALIBRATE = 'State a measured or computed 6x6 (kind = "compliance_matrix"), or count on a larger error than the one stated'
+_CALIBRATE = 'Specify a measured or computed 6x6 (kind = "compliance_matrix"), or expect a larger error than listed'
 
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """A ratio of dimensions, such as t/R, and the interval in which beam theory was compared with elasticity."""
+    """A ratio of dimensions, such as t/R, and the interval of its comparison with elasticity."""
 
     name: str
     value: Array
@@ -27,7 +27,7 @@ class Range:
     high: float = float("inf")
 
     def finding(self, where: str) -> Finding | None:
-        """Advice if a design lies outside, telling the first one; else `None`."""
+        """Return a warning for the first design outside the interval, else `None`."""
         values = np.atleast_1d(self.value).ravel()
         outside = np.flatnonzero((values < self.low) | (values > self.high))
         if not outside.size:
@@ -35,11 +35,11 @@ class Range:
         value = values[outside[0]]
         bound, side = (self.low, "below") if value < self.low else (self.high, "above")
         place = where if values.size == 1 else f"{where}[{outside[0]}]"
-        return Finding(place, f"{self.name} = {value:.3g} is {side} {bound:g}, the limit of what beam theory was compared with", _CALIBRATE)
+        return Finding(place, f"{self.name} = {value:.3g} is {side} {bound:g}, the limit of the comparison with elasticity", _CALIBRATE)
 
 
 def ratio(top: Number, bottom: Number) -> Array:
-    """The real ratio of two dimensions."""
+    """Return the real ratio of two dimensions."""
     return np.real(np.asarray(top)) / np.real(np.asarray(bottom))
 
 
@@ -53,16 +53,22 @@ def _no_family(_: Any) -> str | None:
 
 @dataclass(frozen=True)
 class PartLaw:
-    """The law of a kind: of a part and its material, or of a part alone where `needs_material` is false.
+    """Law of a kind: of a part and its material, or of a part only if `needs_material` is false.
 
-    A part is a `beam`, from which its compliance, mass, geometric stiffness and stress follow; `diagonal` is its compliance (..., 6) where
-    that is not the beam's own (plates). A part without a beam states its whole `compliance` (..., 6, 6), or its `stiffness` (..., 6, 6)
-    where that may be singular or negative in some freedoms (then its compliance need not exist; `material_stiffness` where it is that of a
-    part and its material), and `mass` (..., 12, 12), all about its centre. `damping` is the viscous one (..., 6, 6) [N s/m] of a part that
-    states it, about its centre too. `twisting_load` is the compression [N] at which a column of this kind twists, below Euler's
-    load. `concentration` is the factor of its notches on the nominal stress; without it, or where it is `None`,
-    its stress is unknown. `ranges` are those in which the law was compared with elasticity, `family` names the fitted laws that tell its
-    error. `held` are the modes it has while its ends are held, as many as it asks for, at stations of its half length from -1 to 1.
+    A part is a `beam`, which defines its compliance, mass, geometric stiffness and stress; `diagonal` is its compliance (..., 6) if it
+    differs from the beam's (plates). All 6x6 are about the centre. A part without a beam has:
+
+    - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some freedoms (then no compliance need
+      exist), or `material_stiffness` if the stiffness depends on the material;
+    - `mass` (..., 12, 12).
+
+    Optional entries:
+
+    - `damping`: the viscous damping (..., 6, 6) [N s/m];
+    - `twisting_load`: the compression [N] at which a column of this kind buckles in twist, below Euler's load;
+    - `concentration`: the stress concentration factor of its notches; without it, or if it is `None`, the stress is unknown;
+    - `ranges`: the intervals of comparison with elasticity; `family`: the fitted laws of the model error;
+    - `held`: the fixed-end modes, `inner_modes` of them, at stations from -1 to 1 over the half length.
     """
 
     beam: Callable[[Any, Any], Beam] | None = None

@@ -1,4 +1,4 @@
-"""Leaf springs by beam theory: with plate action and constrained warping, or, with `section` beam, without both."""
+"""Leaf springs by beam theory, with plate action and restrained warping; `section` beam has neither."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 
 def leaf_beam(part: Leaf, material: Material) -> Beam:
-    """The leaf as a Timoshenko beam without plate action (Cowper's shear factor), its ends kept from warping unless its section is a beam.
+    """Build the Timoshenko beam of a leaf without plate action (Cowper's shear factor); warping is restrained unless its section is a beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> leaf = leaf_beam(Leaf("steel", length=0.05, thickness=0.0005, width=0.01), steel)
@@ -35,11 +35,13 @@ def leaf_beam(part: Leaf, material: Material) -> Beam:
 
 
 def leaf_diagonal(part: Leaf, material: Material) -> Array:
-    """The diagonal (..., 6) of the leaf's compliance about its centre.
+    """Compute the diagonal (..., 6) of the leaf's compliance about its centre.
 
-    Timoshenko's beam, its bending about the width divided by the plate factors of `beams.plate`, and the torsion of `torsional_compliance`.
-    In-plane bending and tension are a beam's: their restrained contraction (up to 1 - nu^2 softer than stated for b >> L) is left out. With
-    `section` beam all six are those of `leaf_beam`, with Saint-Venant's torsion: the frame element of textbooks.
+    Timoshenko's beam, with bending about the width divided by the plate factors of `beams.plate`, and the torsion of
+    `torsional_compliance`. In-plane bending and tension follow the beam: restrained contraction (up to 1 - nu^2 softer than computed for b
+    >> L) is neglected.
+
+    With `section` beam all six follow `leaf_beam`, with Saint-Venant torsion: the frame element of textbooks.
 
     >>> soft = Material(young=1.0, poisson=0.3, density=1.0)
     >>> wide = leaf_diagonal(Leaf("soft", length=1.0, thickness=1e-3, width=0.5), soft)
@@ -65,10 +67,10 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
 
 
 def torsional_compliance(part: Leaf, material: Material) -> Number:
-    """Twist of a leaf with ends that cannot warp [rad/(N m)]: L / (G J) (1 - tanh(lam) / lam), lam = (L/b) sqrt(6 / (1 + nu)).
+    """Compute the twist of a leaf with restrained warping [rad/(N m)]: L / (G J) (1 - tanh(lam) / lam), lam = (L/b) sqrt(6 / (1 + nu)).
 
-    L / (G J) where its ends may warp. J of the rectangle. Against plate elements (reference B6) it is too soft by 0.2 % at b/L = 0.1, 1.2 %
-    at 0.5 and 6 % at 2.
+    L / (G J) if its ends may warp, J of the rectangle. Compared with plate elements (reference B6) it is too soft by 0.2 % at b/L = 0.1,
+    1.2 % at 0.5 and 6 % at 2.
 
     >>> soft = Material(young=2.6, poisson=0.3, density=1.0)
     >>> thin = Leaf("soft", length=1.0, thickness=1e-5, width=0.5)
@@ -97,7 +99,7 @@ def _twisting(part: Leaf, points: Stations, section: Section, material: Material
 
 
 def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]:
-    """Bending along y and twist of the leaf while its ends are held: as a plate that cannot warp there, or as its `section` has it.
+    """Compute the fixed-end modes of a leaf, bending along y and twist: as a plate with restrained warping, or by its `section`.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> bending, _ = leaf_held(Leaf("steel", length=0.1, thickness=0.0002, width=0.01, inner_modes=1), steel, np.zeros(1))

@@ -1,4 +1,4 @@
-"""Consistent mass of parts by the static shape functions of their own beams."""
+"""Consistent mass of parts by the static shape functions of their beams."""
 
 from __future__ import annotations
 
@@ -21,13 +21,15 @@ from flexstage.parts.part import Elastic, Part, Restricted, inner
 
 @keep
 def mass(part: Part, material: Material | None) -> Array:
-    """Mass (..., 12, 12) of a part for the twists of its first and its second end, both taken at its centre, in the link frame [SI].
+    """Compute the mass (..., 12, 12) of a part for the twists of its first and second end, both at its centre, in the link frame [SI].
 
     The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K: S the compliance accumulated from the first end to
     x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
-    It holds the material between the arc ends and gives a rigid motion the inertia of the solid exactly. A `ComplianceMatrix`
-    part has half its mass at each end; `Joint` and `Restricted` parts have none. A part with m modes of its own has (..., 12 + m, 12 + m):
-    their unit masses, and what they share with the motion of its ends.
+
+    It includes the material between the arc ends and gives a rigid motion the exact inertia of the solid. A `ComplianceMatrix` part has
+    half its mass at each end; `Joint` and `Restricted` parts have none.
+
+    A part with m fixed-end modes has (..., 12 + m, 12 + m): their unit masses, and their coupling to the motion of the ends.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -46,7 +48,7 @@ def mass(part: Part, material: Material | None) -> Array:
 
 @keep
 def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
-    """Law and mass of a part, its beam integrated once for both; as `law` and `mass` give them.
+    """Compute law and mass of a part, as `law` and `mass`, with one integration of its beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
     >>> from flexstage.parts.rod import Rod
@@ -67,10 +69,10 @@ def _asks_for_modes(part: Part) -> bool:
 
 
 def consistent_mass(beam: Beam) -> Array:
-    """Consistent mass (..., 12, 12) of a beam, as `mass` says.
+    """Compute the consistent mass (..., 12, 12) of a beam; see `mass`.
 
-    A straight symmetric section moves along, about its axis, and in two planes, and none of the four feels another. By the mean and the
-    difference of the motions of both ends, each falls in two again: only their entries are integrated, over half the beam.
+    A straight symmetric section moves along its axis, about it, and in two planes; these four are decoupled. In terms of the mean and the
+    difference of the end motions each splits into two again. Only their entries are integrated, over half the beam.
 
     >>> from flexstage.beams.piezo import piezo_beam
     >>> from flexstage.parts.piezo import Piezo
@@ -93,28 +95,28 @@ def consistent_mass(beam: Beam) -> Array:
 
 
 _END_SHARES = tuple(((place, 0.5), (place + 6, 0.5)) if place < 6 else ((place - 6, -1.0), (place, 1.0)) for place in range(12))
-"""What the mean (0 to 5) and the difference (6 to 11) of both ends' motions have of the first one's and of the second one's."""
+"""Coefficients of the mean (0 to 5) and the difference (6 to 11) of the end motions in the first and the second one."""
 
 
 def _sum(*numbers: Array) -> Array:
-    """The sum over the stations (..., s) of a product; factors without stations are 1."""
+    """Sum over the stations (..., s) of a product; factors without stations are 1."""
     factors = [each for each in numbers if each.ndim]
     return np.einsum(",".join(["...s"] * len(factors)) + "->...", *factors)
 
 
 def _of_ends(rows: Array) -> Array:
-    """From rows (..., 12, n) by mean and difference of the ends' motions to rows by the motions themselves."""
+    """Transform rows (..., 12, n) by mean and difference of the end motions to rows by the end motions."""
     mean, apart = 0.5 * rows[..., :6, :], rows[..., 6:, :]
     return np.concatenate([mean - apart, mean + apart], axis=-2)
 
 
 def _weights(beam: Beam) -> Array:
-    """Inertia (..., s, 6) of what stands for the stations -x and x."""
+    """Inertia (..., s, 6) at the stations -x and x."""
     return (2.0 * beam.points.rule.weights * beam.points.rate)[..., None] * beam.inertia
 
 
 def _with_modes(beam: Beam, ends: Array, held: tuple[Held, ...]) -> Array:
-    """The mass (..., 12 + m, 12 + m) of the ends and of the modes that a part has while they are held, of unit mass each."""
+    """Mass (..., 12 + m, 12 + m) of the ends and of the fixed-end modes, of unit mass each."""
     if not held:
         return ends
     between = join(_shared(beam, mode) for mode in held)
@@ -127,7 +129,7 @@ def _with_modes(beam: Beam, ends: Array, held: tuple[Held, ...]) -> Array:
 
 
 def _shared(beam: Beam, held: Held) -> Array:
-    """Mass (..., 12, n) that modes share with the motion of the ends: integral of N^T w phi dx, phi (v, dv/dx), of the ends' motion N."""
+    """Coupling mass (..., 12, n) of modes and end motions: integral of N^T w phi dx, phi (v, dv/dx), N the end motions."""
     turning, sign = {1: (5, 1.0), 2: (4, -1.0), 3: (3, 1.0)}[held.axis]  # a slope of w along z turns about -y
     modes = {held.axis: held.moved} | ({} if held.turned is None else {turning: sign * held.turned})
     half, weight = held.moved.shape[-1] // 2, 0.5 * _weights(beam)
@@ -143,13 +145,14 @@ def _shared(beam: Beam, held: Held) -> Array:
 
 
 _Motions: TypeAlias = dict[int, dict[int, Array]]
-"""Motions of both ends, their means (0 to 5) and differences (6 to 11), and how sections at x move by them (along x, y, z; about x, y, z).
+"""Section motions at x (along x, y, z; about x, y, z) by the means (0 to 5) and differences (6 to 11) of the end motions.
 
-At -x a mean moves a section along or about itself as at x, else the other way; a difference does the opposite."""
+At -x a mean moves a section along or about itself as at x, else with opposite sign; a difference does the opposite.
+"""
 
 
 def _motions(beam: Beam) -> Iterator[_Motions]:
-    """Motions that do not feel one another: the rows of X, and of X (Gamma - 1/2)."""
+    """Decoupled motions: the rows of X, and of X (Gamma - 1/2)."""
     x, f, one = beam.points.position, beam.flexibility, np.ones(())
     planes = [each for across, turn in ((1, 5), (2, 4)) for each in (f[..., across] + x * x * f[..., turn], f[..., turn], x * f[..., turn])]
     pulled, twisted, *bent = beam.points.runnings(f[..., 0], f[..., 3], *planes)
@@ -167,5 +170,5 @@ def _motions(beam: Beam) -> Iterator[_Motions]:
 
 
 def _per_whole(grown: Array) -> Array:
-    """One over the whole (..., 1) of an even flexibility that has grown so far at the stations x."""
+    """Reciprocal whole (..., 1) of an even flexibility accumulated up to the stations x."""
     return 0.5 / grown[..., -1:]

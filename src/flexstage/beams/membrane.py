@@ -21,9 +21,9 @@ from flexstage.parts.stated import point_masses
 
 
 def membrane_stiffness(part: Membrane, material: Material) -> Array:
-    """Stiffness (..., 6, 6) of the hub against the rim about its centre.
+    """Compute the stiffness (..., 6, 6) of the hub relative to the rim about its centre.
 
-    Small motions: past half of its thickness along x a membrane stretches and stiffens. Shear of the plate is not counted.
+    Small displacements: beyond half of its thickness along x a membrane stretches and stiffens. Plate shear is neglected.
 
     >>> sheet = Membrane("steel", inner=0.02, outer=0.06, thickness=2e-4)
     >>> membrane_stiffness(sheet, Material(young=200e9, poisson=0.3, density=7750.0)).diagonal().round(1).tolist()

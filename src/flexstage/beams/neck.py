@@ -16,7 +16,7 @@ from flexstage.parts.section import Rectangle, circle, cowper_circle
 
 
 def neck_beam(part: Neck, material: Material) -> Beam:
-    """The neck as a Timoshenko beam: round (Cowper's shear factor), or rectangular (6/5) with both sides grown by the profile.
+    """Build the Timoshenko beam of a neck: round (Cowper's shear factor), or rectangular (6/5) with the profile on both sides.
 
     >>> from flexstage.parts.profile import Circular
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)

@@ -15,7 +15,7 @@ from flexstage.parts.section import Rectangle
 
 
 def notch_beam(part: Notch, material: Material) -> Beam:
-    """The notch as a Timoshenko beam of section (t + 2 w(x)) x b, shear factor 6/5, ends rigid and kept from warping.
+    """Build the Timoshenko beam of a notch of section (t + 2 w(x)) x b, shear factor 6/5, with rigid ends and restrained warping.
 
     >>> from flexstage.parts.profile import Circular
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)

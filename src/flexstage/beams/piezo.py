@@ -19,21 +19,21 @@ from flexstage.parts.section import Circle, circle, cowper_circle
 
 @dataclass(frozen=True, eq=False)
 class _Cased(Circle):
-    """A stack's ceramic in a casing: the second moment that its bending rigidity has."""
+    """A stack's ceramic in a casing, with the second moment that matches its bending rigidity."""
 
     moment: Number = 0.0
 
     @cached_property
     def inertia_y(self) -> Number:
-        """As stated [m^4]."""
+        """As specified [m^4]."""
         return self.moment
 
 
 def piezo_beam(part: Piezo) -> Beam:
-    """The stack at constant stroke as a uniform round rod of modulus E = k L / A, with its stated mass.
+    """Build the uniform round rod of a stack at constant stroke, of modulus E = k L / A, with its specified mass.
 
-    With a stated `bending_rigidity` EI, bending takes it and torsion G J = EI / (1 + nu), as in a round section; shear stays the
-    ceramic's.
+    A specified `bending_rigidity` EI replaces the bending rigidity, and torsion is G J = EI / (1 + nu), as for a round section. Shear
+    remains that of the ceramic.
 
     >>> stack = Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01)
     >>> round(float(1e-6 / piezo_beam(stack).diagonal()[0]), 9)
@@ -53,7 +53,7 @@ def piezo_beam(part: Piezo) -> Beam:
 
 
 def effective_modulus(part: Piezo) -> Number:
-    """Modulus of a uniform rod of the ceramic's diameter and the stack's axial stiffness, E = k L / A [Pa].
+    """Compute the modulus E = k L / A [Pa] of a uniform rod with the ceramic's diameter and the stack's axial stiffness.
 
     >>> round(effective_modulus(Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01)) / 1e9, 2)
     35.07

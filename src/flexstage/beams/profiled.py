@@ -1,4 +1,4 @@
-"""What notches and necks have in common: the stress concentration and the proportions of their profiles."""
+"""Stress concentration and proportions of the profiles of notches and necks."""
 
 from __future__ import annotations
 
@@ -9,19 +9,21 @@ from flexstage.beams.law import Range, ratio
 from flexstage.parts.profile import Circular, Contour, Elliptic, Filleted, Profile, Straight
 
 HIGHEST = {"notch": 0.8, "fillet": 1.0, "toroid": 0.5}
-"""The largest thickness over radius that was compared."""
+"""The largest thickness over radius of the comparison with finite elements."""
 
 
 def concentration(profile: Profile, thickness: Number) -> Number | None:
-    """Stress concentration factor of a notch in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), R the radius at the throat.
+    """Compute the notch factor in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), R the radius at the throat.
 
-    R is a^2/c for an ellipse, the fillet's radius for a corner-filleted hinge; a straight hinge has 1 (its corners are not described).
-    Against plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere): circular notch in bending +1 to +2 %,
-    in tension 0 to -13 %; fillets in bending +3 to +7 %, in tension -2 to -10 %.
+    R is a^2/c for an ellipse, the fillet radius for a corner-filleted hinge; a straight hinge has K_t = 1 (its corners are not described).
 
-    Parabolas, hyperbolas and the tips of a V have it by their radius too: the factor of a deep notch depends on thickness and radius at the
-    throat alone (Neuber, Kerbspannungslehre, 1958). Of powers, whose curvature vanishes or is endless there, and of tables no source states
-    it: `None`.
+    Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere): circular notch in bending
+    +1 to +2 %, in tension 0 to -13 %; fillets in bending +3 to +7 %, in tension -2 to -10 %.
+
+    Parabolas, hyperbolas and the tips of a V use their throat radius too. The factor of a deep notch depends only on thickness and radius
+    at the throat (Neuber, Kerbspannungslehre, 1958).
+
+    `None` for powers, whose curvature is zero or infinite at the throat, and for tables, for which no source exists.
 
     >>> from flexstage.parts.profile import Circular
     >>> round(float(concentration(Circular(0.005), 0.001)), 4)
@@ -38,7 +40,7 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
 
 
 def proportions(profile: Profile, thickness: Number, family: str) -> tuple[Range, ...]:
-    """Thickness over the radius at the throat; of a straight profile length over thickness; nothing of curves, which were not compared."""
+    """Return thickness over the throat radius, length over thickness if straight; nothing for curves without comparison."""
     return () if isinstance(profile, Contour) else (_proportion(profile, thickness, family),)
 
 

@@ -1,10 +1,13 @@
-"""Stations along a hinge profile at which beam integrals are evaluated.
+"""Quadrature stations of beam integrals along a hinge profile.
 
-A hinge is symmetric about its centre: the stations cover the half x >= 0, from the centre to the arc's end, both included, by one
-Gauss-Lobatto rule on each smooth piece. On an arc the variable is the angle p stretched by p = d sinh(v), with i d the singularity of 1/h
-nearest to the centre, so that thin and thick necks converge alike: integrals of 1/h ... 1/h^4 are correct to 1e-13
-for thickness over radius from 1e-3 upwards, to 2e-12 at 1e-4. Parabolas and hyperbolas do likewise, and on flanks 1/h is an exponential
-of the variable. Powers have three pieces, which suit any exponent (1e-9 at 16). A table has a rule of fewer points for each of its pieces.
+A hinge is symmetric about its centre. The stations cover the half x >= 0, from the centre to the arc's end, both included, with one
+Gauss-Lobatto rule on each smooth piece.
+
+On an arc the variable is the angle p, stretched by p = d sinh(v), with i d the singularity of 1/h nearest to the centre. Thin and thick
+necks then converge equally: integrals of 1/h ... 1/h^4 are correct to 1e-13 for thickness over radius from 1e-3 upwards, to 2e-12 at 1e-4.
+
+Parabolas and hyperbolas use the same stretching; on flanks 1/h is an exponential of the variable. Powers have three pieces, which suit any
+exponent (1e-9 at 16). A table has a rule of fewer points for each of its pieces.
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ from flexstage.parts.profile import Circular, Elliptic, Filleted, FreeForm, Hype
 
 _POINTS = 25
 _FEW_POINTS = 15
-"""Of each piece of a table."""
+"""Points per piece of a table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,21 +46,21 @@ class Stations:
     rule: Rule
 
     def whole(self, values: Array) -> Array:
-        """Integral over the whole hinge of an even function given at the stations (..., m) -> (...)."""
+        """Integrate an even function given at the stations (..., m) over the whole hinge -> (...)."""
         return 2.0 * np.sum(values * self.rate * self.rule.weights, axis=-1)
 
     def running(self, values: Array) -> Array:
-        """Integrals from the centre to each station (..., m) -> (..., m)."""
+        """Integrate from the centre to each station (..., m) -> (..., m)."""
         return self.runnings(values)[0]
 
     def runnings(self, *values: Array) -> tuple[Array, ...]:
-        """Those of several."""
+        """Apply `running` to several functions."""
         columns = np.stack(np.broadcast_arrays(*values, self.rate)[:-1], axis=-1) * self.rate[..., None]
-        return tuple(np.moveaxis(through(self.rule.running, columns), -1, 0))  # each design by itself: no bit depends on the batch
+        return tuple(np.moveaxis(through(self.rule.running, columns), -1, 0))  # by design: independent of the batch
 
 
 def through(rule: Array, values: Array) -> Array:
-    """A real matrix (k, m) times values (..., m, n), of complex ones both parts at once.
+    """Multiply a real matrix (k, m) by values (..., m, n), complex values as two real parts.
 
     >>> through(np.array([[1.0, 2.0]]), np.array([[1.0], [1.0j]])).tolist()
     [[(1+2j)]]
@@ -69,7 +72,7 @@ def through(rule: Array, values: Array) -> Array:
 
 
 def stations(profile: Profile, thinnest: Number) -> Stations:
-    """The stations of a profile whose section is `thinnest` [m] at the centre.
+    """Build the stations of a profile whose section is `thinnest` [m] at the centre.
 
     >>> points = stations(Circular(1.0), 0.1)
     >>> bool(abs(points.whole(1.0 + points.growth) - (2.0 + 2.0 - np.pi / 2.0)) < 1e-14)
@@ -87,7 +90,7 @@ def _straight(half: Number) -> Stations:
 def _arc(along: Number, across: Number, thinnest: Number, last: Number = 0.5 * np.pi) -> Stations:
     """Arc x = a sin p, w = c (1 - cos p) up to p = `last`.
 
-    The singularity is at p = i arccosh(1 + t / 2c). Nodes are complex where numbers are stepped.
+    The singularity is at p = i arccosh(1 + t / 2c). Nodes are complex under a complex step.
     """
     along, across = np.asarray(along)[..., None], np.asarray(across)[..., None]
     scale = 2.0 * np.arcsinh(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
@@ -107,7 +110,7 @@ def _fillet_stations(profile: Filleted, thinnest: Number) -> Stations:
 
 
 def _vee_stations(profile: Vee, thinnest: Number) -> Stations:
-    """An arc, and a flank on which x runs so that the thickness grows by equal factors: 1/h is an exponential there."""
+    """An arc, then a flank on which the thickness grows by equal factors: 1/h is an exponential there."""
     slope = np.tan(profile.slope)
     start = 2.0 * profile.radius * np.sin(0.5 * profile.slope) ** 2
     run = 0.5 * profile.length - profile.tip
@@ -120,7 +123,7 @@ def _vee_stations(profile: Vee, thinnest: Number) -> Stations:
 
 
 def _parabola(profile: Parabolic, thinnest: Number) -> Stations:
-    """x = a s, s = d sinh v, d = (t / 2c)^1/2: the thickness is twice the least at s = d."""
+    """x = a s, s = d sinh v, d = (t / 2c)^1/2: the thickness is twice the minimum at s = d."""
     along, across = np.asarray(profile.along)[..., None], np.asarray(profile.across)[..., None]
     scale = np.sqrt(np.asarray(thinnest)[..., None] / (2.0 * across))
     span = np.arcsinh(1.0 / scale)
@@ -130,7 +133,7 @@ def _parabola(profile: Parabolic, thinnest: Number) -> Stations:
 
 
 def _hyperbola(profile: Hyperbolic, thinnest: Number) -> Stations:
-    """x = a/k sinh p, w = q (cosh p - 1), k^2 the steepness, p = d sinh v: an arc with an imaginary angle, in two pieces for sharp ones."""
+    """x = a/k sinh p, w = q (cosh p - 1), k^2 the steepness, p = d sinh v: an arc with an imaginary angle; two pieces if sharp."""
     across, steep = np.asarray(profile.semi_axis)[..., None], np.sqrt(np.asarray(profile.steepness))[..., None]
     along = np.asarray(profile.along)[..., None] / steep
     scale = 2.0 * np.arctan(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
@@ -143,7 +146,7 @@ def _hyperbola(profile: Hyperbolic, thinnest: Number) -> Stations:
 
 
 def _power(profile: Power, thinnest: Number) -> Stations:
-    """Up to half of where the power begins to count in cubes, for powers that are no whole number; up to there; then x in equal factors."""
+    """For non-integer powers: up to half of the onset of the power (cubic spacing), up to the onset, then x in equal factors."""
     along, across, exponent = (np.asarray(each)[..., None] for each in (profile.along, profile.across, profile.exponent))
     least = np.asarray(thinnest)[..., None]
     double = (least / (least + 2.0 * across)) ** (1.0 / exponent)
@@ -156,19 +159,19 @@ def _power(profile: Power, thinnest: Number) -> Stations:
 
 
 def _raise(share: Array, exponent: Array) -> Array:
-    """share^exponent; nought in the middle, where its logarithm is none."""
+    """share^exponent, zero at the centre, where the logarithm does not exist."""
     inside = np.real(share) > 0.0
     return np.where(inside, np.exp(exponent * np.log(np.where(inside, share, 1.0))), 0.0)
 
 
 def _table(profile: FreeForm, thinnest: Number) -> Stations:
-    """Each piece of a table by itself, its points drawn towards its thinner end as far as it grows from there."""
+    """Treat each piece of a table separately, with points clustered towards its thinner end."""
     pieces, starts = zip(*((_piece(step, cubic, thinnest), start) for start, step, cubic in profile.pieces()), strict=True)
     return in_series(pieces, starts)
 
 
 def _piece(step: Number, cubic: Sequence[Number], thinnest: Number) -> Stations:
-    """A cubic of the share s of its length, s = d sinh v from the thinner end, d about the share that doubles the thickness."""
+    """A cubic of the fraction s of its length, s = d sinh v from the thinner end; d is near the fraction at which the thickness doubles."""
     step, least, *coefficients = (np.asarray(each)[..., None] for each in (step, thinnest, *cubic))
     low, first, second, third = coefficients
     rise, slope = first + second + third, first + 2.0 * second + 3.0 * third
@@ -176,15 +179,15 @@ def _piece(step: Number, cubic: Sequence[Number], thinnest: Number) -> Stations:
     thin, begin, rise = least + 2.0 * np.where(up, low, low + rise), np.where(up, first, -slope), np.where(up, rise, -rise)
     scale = thin / (begin + np.sqrt(begin * begin + 2.0 * thin * rise + thin * thin))
     span, points = np.arcsinh(1.0 / scale), _points(_FEW_POINTS)
-    there = span * np.where(up, points, 1.0 - points)
-    from_thin = scale * np.sinh(there)
+    stretched = span * np.where(up, points, 1.0 - points)
+    from_thin = scale * np.sinh(stretched)
     share = np.where(up, from_thin, 1.0 - from_thin)
     growth = low + share * (first + share * (second + share * third))
-    return Stations(step * share, step * scale * span * np.cosh(there), growth, _rule(1, _FEW_POINTS))
+    return Stations(step * share, step * scale * span * np.cosh(stretched), growth, _rule(1, _FEW_POINTS))
 
 
 def in_series(pieces: Sequence[Stations], starts: Sequence[Number]) -> Stations:
-    """Pieces one after the other, each from its start on [m]; their rules have one number of points."""
+    """Join pieces in series, each from its start [m]; their rules have equal point counts."""
     positions = [np.asarray(start)[..., None] + piece.position for start, piece in zip(starts, pieces, strict=True)]
     columns = (positions, [piece.rate for piece in pieces], [piece.growth for piece in pieces])
     position, rate, growth = (_concatenate(column) for column in columns)
@@ -220,7 +223,7 @@ def _points(count: int = _POINTS) -> Array:
 
 @functools.cache
 def _rule(pieces: int, count: int = _POINTS) -> Rule:
-    """Interpolatory weights and running integrals of `pieces` unit pieces of `count` points, one after the other."""
+    """Interpolatory weights and running integrals of `pieces` consecutive unit pieces of `count` points."""
     x = 2.0 * _points(count) - 1.0
     integrals = legendre.legint(np.eye(count), lbnd=-1.0, axis=0)
     one = 0.5 * legendre.legvander(x, count) @ integrals @ np.linalg.inv(legendre.legvander(x, count - 1))

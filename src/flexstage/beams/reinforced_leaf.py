@@ -20,9 +20,9 @@ from flexstage.parts.section import Rectangle, cowper_rectangle
 
 
 def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
-    """The leaf as a Timoshenko beam of varying thickness (Cowper's shear factor), its ends kept from warping unless they are free to.
+    """Build the Timoshenko beam of varying thickness (Cowper's shear factor); warping is restrained unless its ends may warp.
 
-    Warping and bimoment go on through the steps (Vlasov's beam with the shear of `beams.torsion`).
+    Warping and bimoment are continuous at the steps (Vlasov's beam with the shear of `beams.torsion`).
     """
     points = _points(part)
     thickness = np.asarray(part.thickness)[..., None] + 2.0 * points.growth
@@ -33,11 +33,13 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
 
 
 def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
-    """The diagonal (..., 6) of its compliance about its centre: that of the beam, less what its thin ends are stiffer as plates.
+    """Compute the diagonal (..., 6) of the compliance about the centre: the beam's, reduced by the plate action of its thin ends.
 
-    Each thin end, up to its fillet, is a leaf between two ends that cannot curve across it, with the factors of `beams.plate`; it turns by
-    the moment in its own middle, and shears there. This takes the middle as stiff: it is if it is twice as thick. The middle itself is a
-    beam, free to curve across. With `section` beam nothing is stiffer.
+    Each thin end, up to its fillet, is a leaf between two ends that cannot curve across it, with the factors of `beams.plate`: rotation by
+    the moment at its own middle, and shear.
+
+    The middle counts as stiff, which holds if it is twice as thick. The middle is a beam, free to curve across. With `section` beam no
+    plate action is included.
     """
     whole = reinforced_beam(part, material).diagonal()
     if part.section is LeafSection.BEAM:
@@ -52,10 +54,10 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
 
 
 def reinforced_plate(part: ReinforcedLeaf, material: Material) -> Beam:
-    """The beam whose bending is `reinforced_diagonal`'s: the thin ends' flexibility about z is less by what stiffens them as plates.
+    """Build the beam whose bending equals `reinforced_diagonal`: plate action reduces the flexibility of the thin ends about z.
 
-    Over each thin end it is a + c u^2 times a beam's, u from -1 to 1, with the mean of the plate's turning and the second moment of its
-    shearing.
+    Over each thin end it is a + c u^2 times the beam's, u from -1 to 1. Its mean matches the rotation of the plate, its second moment the
+    shear.
     """
     whole = reinforced_beam(part, material)
     if part.section is LeafSection.BEAM:
@@ -72,7 +74,7 @@ def reinforced_plate(part: ReinforcedLeaf, material: Material) -> Beam:
 
 
 def _points(part: ReinforcedLeaf) -> Stations:
-    """The middle, the fillet where there is one, and the flexure, by a rule each."""
+    """Rules of the middle, of the fillet if any, and of the thin end."""
     start = 0.5 * part.length - part.flexure_length
     radius: Number = 0.0 if part.fillet is None else part.fillet
     middle, thin = (stations(Straight(2.0 * each), part.thickness) for each in (start, part.flexure_length - radius))
@@ -89,7 +91,7 @@ def _descend(arc: Stations, radius: Number) -> Stations:
 
 
 def _concentration(part: ReinforcedLeaf) -> Number:
-    """Smith's factor of the fillet (`beams.profiled.concentration`); without one its corners are not described, as those of a leaf."""
+    """Smith's factor of the fillet (`beams.profiled.concentration`); corners without a fillet are not described, as for a leaf."""
     return 1.0 if part.fillet is None else (1.0 + part.thickness / (2.0 * part.fillet)) ** 0.45
 
 

@@ -16,7 +16,7 @@ from flexstage.parts.section import circle, cowper_circle
 
 
 def rod_beam(part: Rod, material: Material) -> Beam:
-    """The rod as a Timoshenko beam of circular section with Cowper's shear factor.
+    """Build the Timoshenko beam of a rod: circular section with Cowper's shear factor.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> rod = rod_beam(Rod("steel", length=0.1, diameter=0.002), steel)
@@ -29,7 +29,7 @@ def rod_beam(part: Rod, material: Material) -> Beam:
 
 
 def rod_held(part: Rod, material: Material, places: Array) -> tuple[Held, ...]:
-    """Bending along y and z, and twist, of the rod while its ends are held.
+    """Compute the fixed-end modes of a rod: bending along y and z, and twist.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> [held.axis for held in rod_held(Rod("steel", length=0.1, diameter=0.002, inner_modes=1), steel, np.zeros(1))]

@@ -1,4 +1,4 @@
-"""Springs by their stated stiffness."""
+"""Springs of specified stiffness."""
 
 from flexstage.beams.law import PartLaw
 

@@ -1,4 +1,4 @@
-"""Nominal stress in hinges, and the stress concentration of their notches. A result: real, not differentiated."""
+"""Nominal stress in hinges, and stress concentration of their notches. Results are real, not differentiated."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Stress:
 
 
 def has_section(part: Part) -> bool:
-    """Whether beam theory knows the part's section and the factor of its notches, so that `stress` has something to say of it.
+    """Whether the section and the notch factor of the part are known, so that `stress` has a result.
 
     >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular
@@ -40,24 +40,27 @@ def has_section(part: Part) -> bool:
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
-    """Largest stress in a part that carries `wrench` (..., 6) [N, N m] at its centre, on its second end, in its link frame.
+    """Compute the largest stress in a part under `wrench` (..., 6) [N, N m] at its centre, on its second end, in its link frame.
 
-    Beam theory at every station from end to end, N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z: sigma = |N|/A + |M_z| t/(2 I_z) +
-    |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)), tau the sum of the largest of shear and torsion, sqrt(sigma^2 + 3 tau^2). The
-    maxima of a section are added although they stand at different points of it: an upper bound of the nominal stress. `None` for
-    parts without a known section (piezo stacks have limits of load instead) or without a known factor.
+    Beam theory at every station from end to end: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z.
+
+    sigma = |N|/A + |M_z| t/(2 I_z) + |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)), tau is the sum of the largest shear and
+    torsion stresses, and the result sqrt(sigma^2 + 3 tau^2).
+
+    The maxima of a section are added although they occur at different points: an upper bound of the nominal stress. `None` for parts
+    without a known section (piezo stacks have load limits instead) or without a known notch factor.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.05, thickness=0.001, width=0.01)
-    >>> found = stress(leaf, steel, np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]))  # 1 N guided: M = F L/2 at both ends
-    >>> round(float(found.nominal) / 1e6, 2), round(6 * 0.025 / (0.01 * 0.001**2) / 1e6, 2)
+    >>> result = stress(leaf, steel, np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]))  # 1 N guided: M = F L/2 at both ends
+    >>> round(float(result.nominal) / 1e6, 2), round(6 * 0.025 / (0.01 * 0.001**2) / 1e6, 2)
     (15.0, 15.0)
     """
     own = inner(part)
     known = law_of(own)
     factor = None if known is None or known.beam is None or known.concentration is None else known.concentration(own)
-    if factor is None:  # as has_section says
+    if factor is None:  # guaranteed by has_section
         return None
     beam = beam_of(own, material)
     position = np.stack([-beam.points.position, beam.points.position], axis=-2)

@@ -1,18 +1,24 @@
-"""Torsion of hinges whose ends cannot warp.
+"""Torsion of hinges with restrained warping at their ends.
 
-A section that twists also warps along x, and the rigid bodies at the ends of a hinge forbid it. With twist phi(x) and warping
-u = theta(x) y z,
+A twisted section also warps along x, and the rigid bodies at the ends of a hinge prevent warping. With twist phi(x) and warping u =
+theta(x) y z,
 
     2 U = integral of G J phi'^2 + G S (r phi' - theta)^2 + E C_w theta'^2 dx,    theta = 0 at both ends,
 
-J Saint-Venant's constant, S = I_p / k the shear stiffness (k the shear factor), r = (b^2 - t^2) / (b^2 + t^2), C_w = b^3 t^3 / 144. For
-the shape y z this is the exact energy of the displacement field, but for J, put in place of b^3 t^3 / (3 (b^2 + t^2)), and for k.
+J is Saint-Venant's constant, S = I_p / k the shear stiffness (k the shear factor), r = (b^2 - t^2) / (b^2 + t^2), C_w = b^3 t^3 / 144. For
+the shape y z this is the exact energy of the displacement field, except for k and for J, which replaces b^3 t^3 / (3 (b^2 + t^2)).
 
-Limits: a slender hinge, C = integral of dx / (G J) (Saint-Venant); a wide one, C = 12 C_y / b^2 (every strip dz bends as the hinge itself
-does); a square section does not warp. Between them no blend is needed. Against 3-D finite elements of circular notches with rigid arc
-ends (tests/elsewhere) the error is below 1 % at t/R = 0.2 for widths from 2 t to 10 t, 2 % at 30 t, +3 to +8 % for t/R from 0.5 to 1, and
--6 % where the throat is square. Saint-Venant is up to 25 times, 12 C_y / b^2 up to 10 times too soft. With the root compliance of
-full-height blocks a wide notch is up to 20 % softer still, as it is in tension.
+Limits:
+
+- slender hinge: C = integral of dx / (G J) (Saint-Venant);
+- wide hinge: C = 12 C_y / b^2 (every strip dz bends as the hinge does);
+- square section: no warping.
+
+No interpolation is needed between them. Errors compared with 3-D finite elements of circular notches with rigid arc ends (tests/elsewhere):
+below 1 % at t/R = 0.2 for widths from 2 t to 10 t, 2 % at 30 t, +3 to +8 % for t/R from 0.5 to 1, and -6 % for a square throat.
+
+Saint-Venant is up to 25 times, 12 C_y / b^2 up to 10 times too soft. The root compliance of full-height blocks makes a wide notch up to 20
+% softer still, as in tension.
 """
 
 from __future__ import annotations
@@ -26,9 +32,9 @@ from flexstage.beams.quadrature import Stations
 from flexstage.parts.section import Section
 
 _LONG = 20.0
-"""Decay lengths from the centre to an end from which stations do not resolve the ends: the equation at stations has their integral."""
+"""Decay lengths from the centre to an end above which the stations do not resolve the ends; the integral equation is solved instead."""
 _TOGETHER = 32
-"""Designs solved at once."""
+"""Designs per batch of the solution."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +46,7 @@ class Twisting:
 
 
 def free_twist(section: Section, shear: Array) -> Twisting:
-    """Twist of a part free to warp, phi' = 1 / (G J) (Saint-Venant): circles.
+    """Compute the twist of a part with free warping, phi' = 1 / (G J) (Saint-Venant), e.g. circular sections.
 
     >>> from flexstage.parts.section import circle
     >>> bool(abs(free_twist(circle(np.ones(1), 1.0), np.ones(1)).rate[0] - 32 / np.pi) < 1e-12)
@@ -51,11 +57,12 @@ def free_twist(section: Section, shear: Array) -> Twisting:
 
 
 def constrained_twist(section: Section, points: Stations, young: Array, shear: Array) -> Twisting:
-    """Twist of a hinge whose ends cannot warp; moduli `young` E and `shear` G [Pa], shape (..., 1).
+    """Compute the twist of a hinge with restrained warping; moduli `young` E and `shear` G [Pa], shape (..., 1).
 
-    Eliminating phi' leaves (E C_w theta')' - g theta + f = 0, f = S r / (J + S r^2), g = G S J / (J + S r^2); it is solved as
-    theta = A (f - g theta) with A the twofold integral by the rule of the stations. Where the section stays the same and the stations
-    resolve its ends, theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
+    Eliminating phi' gives (E C_w theta')' - g theta + f = 0, f = S r / (J + S r^2), g = G S J / (J + S r^2). It is solved as theta = A (f -
+    g theta) with A the twofold integral by the rule of the stations.
+
+    For a constant section whose ends the stations resolve, theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.section import Rectangle
@@ -81,16 +88,16 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
         theta, bimoment = _in_closed_form(points, rigidity, spring, load)
     else:
         theta, bimoment = _at_stations(points, rigidity, spring, load)
-        if np.any(resolved):  # each design by itself: what is told of it does not depend on those beside it
+        if np.any(resolved):  # one design at a time: the result does not depend on the batch
             closed, bending = _in_closed_form(points, rigidity, spring, load)
             theta, bimoment = np.where(resolved, closed, theta), np.where(resolved, bending, bimoment)
     return Twisting(free + load * theta, bimoment)
 
 
 def _is_resolved(points: Stations, rigidity: Array, spring: Array) -> Array:
-    """In which designs (..., 1) the section stays the same, steps of it, too, and stations resolve its ends."""
+    """Whether (..., 1) the section is constant, including its complex steps, and the stations resolve its ends."""
     square = np.real(spring) / np.real(rigidity)
-    if not np.any(np.all(square == square[..., :1], axis=-1)):  # what is cheap to tell
+    if not np.any(np.all(square == square[..., :1], axis=-1)):  # cheap test first
         return np.zeros((*square.shape[:-1], 1), dtype=bool)
     wavenumber = np.sqrt(spring / rigidity)
     equal = np.all(wavenumber == wavenumber[..., :1], axis=-1)
@@ -98,20 +105,20 @@ def _is_resolved(points: Stations, rigidity: Array, spring: Array) -> Array:
 
 
 def _in_closed_form(points: Stations, rigidity: Array, spring: Array, load: Array) -> tuple[Array, Array]:
-    """theta, and E C_w theta', where the section stays the same; theta is f / g far from ends."""
-    wavenumber, rest = np.sqrt(spring / rigidity), load / spring
+    """theta and E C_w theta' of a constant section; theta is f / g far from the ends."""
+    wavenumber, plateau = np.sqrt(spring / rigidity), load / spring
     straight, sloping = decays(points, wavenumber)
-    return rest * (1.0 - straight), -rigidity * rest * wavenumber * sloping
+    return plateau * (1.0 - straight), -rigidity * plateau * wavenumber * sloping
 
 
 def _at_stations(points: Stations, rigidity: Array, spring: Array, load: Array) -> tuple[Array, Array]:
-    """theta, and E C_w theta', of the equation at the stations."""
+    """theta and E C_w theta' of the equation at the stations."""
     theta = _warping(points, points.rate / rigidity, points.rate * spring, points.rate * load)
     return theta, -points.running(load - spring * theta)
 
 
 def decays(points: Stations, wavenumber: Array) -> tuple[Array, Array]:
-    """cosh(k x) and sinh(k x) over cosh(k l) at the stations, l the last of them, for a wavenumber k (..., 1).
+    """Compute cosh(k x) and sinh(k x) over cosh(k l) at the stations, l the last of them, for a wavenumber k (..., 1).
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.profile import Straight
@@ -125,21 +132,21 @@ def decays(points: Stations, wavenumber: Array) -> tuple[Array, Array]:
 
 
 def _warping(points: Stations, *numbers: Array) -> Array:
-    """theta at the stations (..., m), of 1 / (E C_w), g and f, each times dx/du; a few designs at a time: their matrices fit the cache.
+    """theta at the stations (..., m), of 1 / (E C_w), g and f, each times dx/du; in batches whose matrices fit the cache.
 
-    Steps along a first axis, of the same real numbers, share the matrices of these.
+    Complex steps along a first axis, at equal real parts, share the matrices of the real parts.
     """
     numbers = np.broadcast_arrays(*numbers)
     shape: tuple[int, ...] = numbers[0].shape
     shared = numbers[0].ndim > 2 and all(np.array_equal(np.real(each), np.broadcast_to(np.real(each[:1]), shape)) for each in numbers)
     flat = [each.reshape(shape[0] if shared else 1, -1, shape[-1]) for each in numbers]
     blocks = [slice(start, start + _TOGETHER) for start in range(0, flat[0].shape[1], _TOGETHER)]
-    found = [_theta(points, *(np.moveaxis(each[:, block], 0, -1) for each in flat)) for block in blocks]
-    return np.moveaxis(np.concatenate(found), -1, 0).reshape(shape)
+    solved_blocks = [_theta(points, *(np.moveaxis(each[:, block], 0, -1) for each in flat)) for block in blocks]
+    return np.moveaxis(np.concatenate(solved_blocks), -1, 0).reshape(shape)
 
 
 def _theta(points: Stations, *numbers: Array) -> Array:
-    """theta of numbers (b, m, n) whose real parts are those of the first of n; steps of the equation's solution solve it, too."""
+    """theta for numbers (b, m, n) with equal real parts along n; complex steps pass through the solution."""
     out, running = points.rule.weights - points.rule.running, points.rule.running
     softness, spring, load = (np.real(each[..., :1]) for each in numbers)
     integral = out @ (softness * running)

@@ -1,4 +1,4 @@
-"""Where beam theory holds: the range of each part, the error to expect, and advice outside the range. Real numbers only."""
+"""Validity of beam theory: the range of each part, the expected model error, and warnings outside the range. Real numbers only."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from flexstage.parts.shape import Profiled, Shaped
 
 _POISSON = 0.3
 _TOO_SOFT = 0.05
-"""Excess of beam theory's compliance about z from which wide parts have a finding."""
+"""Relative excess compliance about z above which wide parts get a warning."""
 _Bounds = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
 class Validity:
-    """Ranges of a part, the signed relative `errors` to expect of its compliance by component (-0.1: 10 % too stiff), and `findings`.
+    """Ranges of a part, the signed relative `errors` of its compliance by component (-0.1: 10 % too stiff), and `findings`.
 
-    A component that is not among the errors, or not a number in a batch, was not compared with elasticity or cannot be told.
+    A component without an error, or with NaN in a batch, was not compared with elasticity.
     """
 
     ranges: tuple[Range, ...] = ()
@@ -37,11 +37,13 @@ class Validity:
 
 
 def validity(part: Part, where: str = "part", material: Material | None = None) -> Validity:
-    """What to expect of beam theory for a part; `where` names it in the findings. Poisson's ratio is 0.3 unless a material is given.
+    """Estimate the model error of beam theory for a part; `where` names it in the warnings. Poisson's ratio is 0.3 without a material.
 
-    The errors are right within 1 % of the compliance (fillets along y and about z: 2 %) against three-dimensional elements: notches with
-    their roots, grown on blocks of their full height and width; straight ones, leaves and rods between rigid faces. Along z and about x a
-    notch has none: beside the blocks it grows on, there is too little of its own to tell. Parts that are stated have no error here.
+    The errors are right within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional elements.
+
+    - Notches include their roots, on blocks of their full height and width; straight ones, leaves and rods are between rigid faces.
+    - Along z and about x a notch has no error: its own compliance is too small compared with the blocks.
+    - Parts with a specified matrix have no error.
 
     >>> from flexstage.parts.notch import Notch
     >>> hinge = validity(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))
@@ -58,7 +60,7 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
 
 
 def _plane_strain_finding(where: str, error: Array | None, poisson: Number) -> Finding | None:
-    """A part whose width prevents contraction, so that bending is plane strain, which beam theory leaves out; the worst of a batch."""
+    """Warn of a part whose width prevents contraction (plane-strain bending), which beam theory neglects; the worst of a batch."""
     worst = -np.inf if error is None else float(np.max(np.nan_to_num(error, nan=-np.inf)))
     if worst < _TOO_SOFT:
         return None
@@ -66,25 +68,25 @@ def _plane_strain_finding(where: str, error: Array | None, poisson: Number) -> F
     off = f"beam theory is {100.0 * worst:.2g} % too soft about z (limit: 1 - nu^2 = {limit:.3g})"
     return Finding(
         where,
-        f"it is so wide that it bends in plane strain: {off}",
-        'Expect that stiffness, or state a measured or computed 6x6 (kind = "compliance_matrix")',
+        f"bends in plane strain due to its width: {off}",
+        'Use the plane-strain stiffness, or specify a measured or computed 6x6 (kind = "compliance_matrix")',
     )
 
 
 def _errors(part: Shaped, family: str, poisson: Number) -> dict[str, Array]:
-    """By component, NaN outside what was compared; components that are nowhere known are left out."""
+    """Errors by component, NaN outside the compared range; components without any comparison are omitted."""
     slot = slot_of(part, poisson)
-    found = {"rx": np.zeros_like(slot.thickness)} if family == "bar" and part.throat.warping is None else {}
-    with np.errstate(all="ignore"):  # outside the range anything may come out, and nothing of it is told
+    errors = {"rx": np.zeros_like(slot.thickness)} if family == "bar" and part.throat.warping is None else {}
+    with np.errstate(all="ignore"):  # values outside the range may be anything and are masked
         for axis, (law, numbers) in LAWS[family].items():
             index = AXES.index(axis)
             value = slot.beam[..., index] / law(slot, numbers) - 1.0
-            found[axis] = np.where(within(family, axis, slot), value, np.nan)
-    return {axis: found[axis] for axis in AXES if axis in found and not np.all(np.isnan(found[axis]))}
+            errors[axis] = np.where(within(family, axis, slot), value, np.nan)
+    return {axis: errors[axis] for axis in AXES if axis in errors and not np.all(np.isnan(errors[axis]))}
 
 
 def family_of(part: Part) -> str | None:
-    """The family of laws that a part belongs to; `None` where none was fitted.
+    """Return the family of fitted laws of a part, or `None` if there is none.
 
     >>> from flexstage.parts.rod import Rod
     >>> family_of(Rod("steel", length=0.1, diameter=0.002))
@@ -95,7 +97,7 @@ def family_of(part: Part) -> str | None:
 
 
 def slot_of(part: Shaped, poisson: Number) -> Slot:
-    """A part by the numbers that the laws ask for.
+    """Build the dimensions of a part that the fitted laws use.
 
     >>> from flexstage.parts.rod import Rod
     >>> float(slot_of(Rod("steel", length=0.1, diameter=0.002), 0.3).half)
@@ -118,9 +120,9 @@ def _axes(profile: Profile | None) -> tuple[Array, Array]:
 
 
 def within(family: str, axis: str, slot: Slot) -> Array:
-    """Where a law was compared with elements: its proportions, and Poisson's ratio.
+    """Whether the proportions and Poisson's ratio are within the comparison with elements.
 
-    Bending about z ends in known limits, beam theory for thin throats and plane strain for wide ones: it has no bound on that side.
+    Bending about z has known limits: beam theory for thin throats, plane strain for wide ones. It has no bound on that side.
 
     >>> from flexstage.parts.rod import Rod
     >>> bool(within("bar", "x", slot_of(Rod("steel", length=0.1, diameter=0.002), 0.45)))

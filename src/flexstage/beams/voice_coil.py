@@ -1,4 +1,4 @@
-"""Voice coils: the magnets' stiffness and the damping along x, both sides' masses."""
+"""Voice coils: the magnet stiffness and damping along x, and the masses of both sides."""
 
 from flexstage.beams.law import PartLaw
 

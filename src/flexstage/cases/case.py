@@ -1,22 +1,16 @@
-"""A shipped case: its parameters, the description drawn from them, and the design file that a user starts from."""
+"""A shipped case: the description in its design file, some of its parameters stated otherwise, and the file that a user starts from."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, make_dataclass, replace
-from functools import cache, reduce
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from typing import Annotated, Any
 
-import numpy as np
-
-from flexstage.base.number import Number, Table, stack
-from flexstage.base.units.unit import quantity_of_unit
 from flexstage.cases.parameters import Stated, parameter, with_parameters
-from flexstage.mechanism.addresses.address import get, set_value
-from flexstage.mechanism.grammar.formulas import NUMBERS
+from flexstage.mechanism.grammar.formulas import PREFIX
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import dumps, loads, patch, round_to_digits
+from flexstage.mechanism.store import loads, patch
 
 FILES = Path(__file__).parent / "files"
 
@@ -28,17 +22,6 @@ class Case:
     name: str
     summary: str
 
-    @property
-    def parameters(self) -> Any:
-        """Its parameters as a dataclass with their quantities: the named numbers of the file that are no formulas."""
-        return _parameters(self.name)
-
-    def draw(self, parameters: Any) -> Mechanism:
-        """The description from these parameters; what the file works out of them follows."""
-        stated = {each.name: getattr(parameters, each.name) for each in fields(parameters)}
-        changed = [name for name, value in stated.items() if value is not getattr(self.parameters, name)]
-        return reduce(lambda stage, name: set_value(stage, f"{NUMBERS}.{name}", stated[name]), changed, _description(self.name))
-
     def build(self, stated: Mapping[str, Stated] | None = None) -> Mechanism:
         """The description with some parameters `stated` otherwise: texts with units, or SI numbers; arrays make it a batch.
 
@@ -48,41 +31,14 @@ class Case:
         >>> CASES["hexapod"].build({"slope": "50 deg"}).name
         'hexapod'
         """
-        return self.draw(with_parameters(self.parameters, stated or {}))
+        return with_parameters(_description(self.name), stated or {})
 
     def text(self, stated: Mapping[str, Stated], heading: str) -> str:
         """The design file, its comments included, with some parameters `stated` otherwise, under a `heading` of its own."""
-        own = {f"{NUMBERS}.{parameter(self.parameters, name).name}": value for name, value in stated.items()}
+        own = {PREFIX + parameter(_description(self.name), name).name: value for name, value in stated.items()}
         text = file_text(self.name)
         head = "".join(f"# {line}".rstrip() + "\n" for line in heading.splitlines())
         return f"{head}\n{patch(text, own) if own else text}"
-
-
-@dataclass(frozen=True)
-class FunctionCase(Case):
-    """A case that a `function` draws from the dataclass of its parameters."""
-
-    function: Callable[[Any], Mechanism]
-    own: Any
-
-    @property
-    def parameters(self) -> Any:
-        """A dataclass of its parameters."""
-        return self.own
-
-    def draw(self, parameters: Any) -> Mechanism:
-        """The description from these parameters."""
-        return self.function(parameters)
-
-    def build(self, stated: Mapping[str, Stated] | None = None) -> Mechanism:
-        """The description with some parameters `stated` otherwise, without tags of numbers that are not those of the case."""
-        own, found = self.draw(self.own), super().build(stated)
-        tags = {key: tag for key, tag in found.tags.items() if key in own.tags and np.all(stack(get(found, key)) == stack(get(own, key)))}
-        return replace(found, tags=Table(tags))
-
-    def text(self, stated: Mapping[str, Stated], heading: str) -> str:
-        """The design file with some parameters `stated` otherwise, under a `heading`."""
-        return dumps(round_to_digits(self.build(stated)), {"": heading})
 
 
 def file_text(name: str) -> str:
@@ -97,13 +53,3 @@ def file_text(name: str) -> str:
 @cache
 def _description(name: str) -> Mechanism:
     return loads(file_text(name), where=f"{name}.toml")
-
-
-@cache
-def _parameters(name: str) -> Any:
-    stage = _description(name)
-    own = {key: number for key, number in stage.numbers.items() if f"{NUMBERS}.{key}" not in stage.formulas}
-    slots = [(key, Annotated[Number, quantity_of_unit(number.unit)], number.value) for key, number in own.items()]
-    return make_dataclass(
-        "Numbers", slots, frozen=True, namespace={"__doc__": f"Numbers of {name}, SI.\n\nThe named numbers of its file."}
-    )()

@@ -10,22 +10,15 @@ from typing import Any
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Number, Table
-from flexstage.cases.case import Case, FunctionCase
-from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTED, double_triangle
-from flexstage.cases.parameters import Stated, parameter, with_parameters
+from flexstage.cases.case import Case
+from flexstage.cases.parameters import Stated, parameter
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import round_to_digits
 
-_TRIANGLES = (
-    ("double-triangle", SM_REF_B, "six axes: three direct units inside, three levers outside (Shin & Moon), buildable"),
-    ("double-triangle-a", SM_REF_A, "the same stage for checking formulas; cannot be built"),
-    (
-        "double-triangle-refitted",
-        SM_REF_B_REFITTED,
-        "the buildable stage with neck and lever notch fitted by FEA instead of beam theory",
-    ),
-)
-_FILES = {
+_SUMMARIES = {
+    "double-triangle": "six axes: three direct units inside, three levers outside (Shin & Moon), buildable",
+    "double-triangle-a": "the same stage for checking formulas; cannot be built",
+    "double-triangle-refitted": "the buildable stage with neck and lever notch fitted by FEA instead of beam theory",
     "parallelogram": "one axis: a platform on two leaves, pushed by one stack",
     "xy-stage": "two axes: four carriages on leaves around a platform, two of them driven",
     "xy-stage-floating": "the XY stage with one stack only: under-actuated",
@@ -51,9 +44,7 @@ _FILES = {
     "steering-mirror": "tip and tilt: a mirror on a wire and a membrane, moved by four voice coils",
     "z-stage": "one vertical axis: four leaves, a payload, a spring that carries its weight, a voice coil",
 }
-CASES: Mapping[str, Case] = {name: FunctionCase(name, line, double_triangle, own) for name, own, line in _TRIANGLES} | {
-    name: Case(name, line) for name, line in _FILES.items()
-}
+CASES: Mapping[str, Case] = {name: Case(name, line) for name, line in _SUMMARIES.items()}
 
 
 @check_arguments
@@ -89,15 +80,15 @@ def shipped_case(name: str) -> Case:
 
 @dataclass(frozen=True)
 class Variant:
-    """A shipped case by name, and the parameters in which it differs from that case: full names and SI values, choices as they are."""
+    """A shipped case by name, and the parameters in which it differs from that case: names and SI values."""
 
     case: str
     stated: tuple[tuple[str, Any], ...] = ()
 
     @property
-    def parameters(self) -> Any:
-        """The dataclass of all its parameters."""
-        return with_parameters(shipped_case(self.case).parameters, dict(self.stated))
+    def start(self) -> Mechanism:
+        """The description with what is stated."""
+        return shipped_case(self.case).build(dict(self.stated))
 
     def value(self, name: str) -> Any:
         """What it has for a parameter [SI].
@@ -105,7 +96,7 @@ class Variant:
         >>> round(Variant("hexapod", (("rise", 0.01),)).value("rise"), 9)
         0.01
         """
-        return parameter(self.parameters, name).value
+        return parameter(self.start, name).value
 
     def mechanism_at(self, values: Mapping[str, Number]) -> Mechanism:
         """The description at other `values` of some parameters [SI], numbers or arrays: to the last bit, and without tags.
@@ -113,4 +104,4 @@ class Variant:
         >>> Variant("hexapod").mechanism_at({"neck_radius": 0.005}).parts["neck"].profile
         Circular(radius=0.005)
         """
-        return replace(shipped_case(self.case).draw(with_parameters(self.parameters, values)), tags=Table({}))
+        return replace(shipped_case(self.case).build({**dict(self.stated), **values}), tags=Table({}))

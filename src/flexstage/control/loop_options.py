@@ -1,104 +1,188 @@
-"""What the options of the command `loop` make of a set-up: theirs go before its own."""
+"""Options of the command `loop` that override values of its set-up file."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias, TypeVar
+from typing import Annotated, Any, TypeAlias
 
-from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.units.quantity import ACCELERATION_NOISE, NOISE_DENSITY, RATIO, VELOCITY_NOISE
-from flexstage.control.study import setup as forms
-from flexstage.control.study.choices import Compensation, Criterion, Following
-from flexstage.show.command.options import text_option
-from flexstage.show.command.values import first_that_parses, motions
+from flexstage.control.study.choices import Axes, Compensation, Criterion, Following
+from flexstage.control.study.file import SetupChange, read_setup
+from flexstage.control.study.setup import LoopSetup
+from flexstage.control.tuning.objective import TuningObjective
+from flexstage.models.theory import Model
+from flexstage.show.command.options import (
+    MODEL,
+    AmplifierValues,
+    GaugeNoise,
+    GaugeResolution,
+    Seed,
+    rate_option,
+    text_option,
+    word_option,
+)
+from flexstage.show.command.values import Values, amplifier_values, first_that_parses, motions
 
 Setup: TypeAlias = Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file of the loop.")]
 
-_Record = TypeVar("_Record")
-_NOTHING = "none"
+_NOTHING, _AXES = "none", ("x", "y", "z")
+_ADDRESSES = {
+    "model": "model",
+    "rate": "rate",
+    "delay": "delay",
+    "seed": "seed",
+    "controller": "controller.kind",
+    "coordinates": "controller.coordinates",
+    "bandwidth": "controller.bandwidth",
+    "tune_for": "controller.goal.objective",
+    "max_sensitivity": "controller.sensitivity",
+    "force_feedback": "damping.ratio",
+    "tracking": "follow.method",
+    "gauge_noise": "gauges.noise",
+    "resolution": "gauges.resolution",
+}
+"""Options whose text is the value at an address of the set-up file."""
+_UNITS = {"bandwidth": "Hz", "resistance": "ohm", "current": "A"}
 
 
-def override(record: _Record, given: Mapping[str, Any]) -> _Record:
-    """The record with the values that are given, others than `None`."""
-    return replace(record, **{name: value for name, value in given.items() if value is not None})  # type: ignore[type-var]
+@dataclass(frozen=True)
+class LoopOptions:
+    """The set-up of a loop as the command line states it."""
 
+    setup: Setup = None
+    controller: Annotated[
+        str | None,
+        text_option(
+            "--controller",
+            "KIND",
+            "Kind of controller: pi, pid, resonant, ppf, pvf or lqg; none for an open loop. Default: pi, with force actuators pid.",
+        ),
+    ] = None
+    coordinates: Annotated[
+        Axes | None,
+        word_option("--coordinates", Axes, "Coordinates of the single loops. Default: platform.", show_default=False),
+    ] = None
+    bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: maximum at the margin.")] = None
+    tune_for: Annotated[
+        TuningObjective | None,
+        word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: none.", show_default=False),
+    ] = None
+    max_sensitivity: Annotated[
+        str | None, text_option("--max-sensitivity", "NUMBER", "Maximum peak sensitivity Ms of a tuned loop. Default: 2.")
+    ] = None
+    force_feedback: Annotated[
+        str | None,
+        text_option("--force-feedback", "RATIO", "Modal damping by integral force feedback in the legs, e.g. 50%. Default: none."),
+    ] = None
+    tracking: Annotated[
+        Following | None,
+        word_option(
+            "--tracking", Following, "Tracking method of a known path; zv and zvd need a set-up file. Default: none.", show_default=False
+        ),
+    ] = None
+    rate: Annotated[str | None, rate_option("10 kHz, or 10 times the highest platform mode")] = None
+    delay: Annotated[str | None, text_option("--delay", "VALUE", "Delay from sampling to the new output. Default: one sample.")] = None
+    trajectory: Annotated[
+        str | None,
+        text_option("--trajectory", "NAME|FILE", "Trajectory: step, raster, spiral, sine, or CSV file of times and poses. Default: step."),
+    ] = None
+    amplitude: Annotated[
+        list[str] | None,
+        text_option("--amplitude", "AXIS=VALUE", "Amplitude of a step or sine, e.g. x=1um. Repeatable. Default: 1 um, 10 urad, all axes."),
+    ] = None
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until all has settled.")] = None
+    feedforward: Annotated[
+        list[str] | None,
+        text_option(
+            "--feedforward",
+            "NAME",
+            f"Feedforward: {', '.join(each.value for each in Compensation)}, or none. Repeatable. Default: lost-motion.",
+        ),
+    ] = None
+    hysteresis: Annotated[
+        str | None,
+        text_option("--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: file of a model, or width, e.g. 15%. Default: none."),
+    ] = None
+    floor: Annotated[
+        list[str] | None,
+        text_option("--floor", "[AXIS=]VALUE", 'Floor vibration: VC-D, z=VC-C or "x=3 um/s^2/Hz^0.5". Repeatable. Default: none.'),
+    ] = None
+    gauge_noise: GaugeNoise = None
+    resolution: GaugeResolution = None
+    amplifier: AmplifierValues = None
+    seed: Seed = None
+    model: Annotated[Model | None, MODEL] = None
 
-def follow_setup(given: forms.FollowSetup | None, method: Following) -> forms.FollowSetup:
-    """The set-up's way to follow a path, by another law."""
-    return forms.FollowSetup(method) if given is None else replace(given, method=method)
+    def read(self) -> tuple[LoopSetup, list[Finding]]:
+        """The set-up without the options that are wrong, and what is wrong with these."""
+        changes, findings = dict[str, SetupChange](), list[Finding]()
+        for each in (self._plain(), self._compensate(), self._floor(), self._trajectory(), self._amplifier()):
+            try:
+                changes |= dict(each)
+            except DesignError as error:
+                findings += error.findings
+        found, wrong = read_setup(self.setup, changes)
+        return found, [*findings, *wrong]
 
+    def _plain(self) -> Iterator[tuple[str, SetupChange]]:
+        given = vars(self)
+        for name, address in _ADDRESSES.items():
+            if (value := given[name]) is not None:
+                yield address, SetupChange(f"--{name.replace('_', '-')}", value.value if isinstance(value, Enum) else value)
+        if self.seconds is not None:
+            yield "seconds", SetupChange("--seconds", f"{self.seconds!r} s")
+        if self.hysteresis is not None:
+            is_width = first_that_parses(self.hysteresis, {"width": RATIO}) is not None
+            yield "hysteresis", SetupChange("--hysteresis", {"width" if is_width else "file": self.hysteresis})
 
-def hysteretic_stacks(said: str | None) -> forms.HystereticStacks | None:
-    """A width where the text is a ratio, else a file."""
-    if said is None:
-        return None
-    width = first_that_parses(said, {"width": RATIO})
-    return forms.HystereticStacks(file=said) if width is None else forms.HystereticStacks(width=width[1])
+    def _compensate(self) -> Iterator[tuple[str, SetupChange]]:
+        words, known = self.feedforward or (), [each.value for each in Compensation]
+        require(
+            Finding(f"--feedforward {word}", "this is no feedforward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
+            for word in words
+            if word not in known and (word != _NOTHING or len(words) > 1)
+        )
+        if words:
+            yield "compensate", SetupChange("--feedforward", [word for word in words if word != _NOTHING])
 
-
-def compensation(words: Sequence[str] | None) -> tuple[Compensation, ...] | None:
-    """The feedforward that the words of `--feedforward` name."""
-    if words is None:
-        return None
-    known = {each.value: each for each in Compensation}
-    require(
-        Finding(f"--feedforward {word}", "this is no feedforward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
-        for word in words
-        if word not in known and (word != _NOTHING or len(words) > 1)
-    )
-    return tuple(known[word] for word in words if word in known)
-
-
-def floor_setup(given: forms.Floor, texts: Sequence[str]) -> forms.Floor | None:
-    """The floor as `--floor` says: each axis, or all that no text names an axis of."""
-    if not texts:
-        return None
-    findings: list[Finding] = []
-    found: dict[str, forms.VibrationSetup] = {}
-    for text in texts:
-        axis, sign, value = (part.strip() for part in text.rpartition("="))
-        try:
+    def _floor(self) -> Iterator[tuple[str, SetupChange]]:
+        for text in self.floor or ():
+            axis, sign, value = (part.strip() for part in text.rpartition("="))
+            if sign and axis not in _AXES:
+                raise refuse(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three")
             shaking = _shaking(text, value)
-            found |= {each: shaking for each in ("x", "y", "z") if not sign or each == axis}
-        except DesignError as error:
-            findings += error.findings
-        if sign and axis not in ("x", "y", "z"):
-            findings.append(Finding(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three"))
-    require(findings)
-    return override(given, found)
+            yield from ((f"floor.{each}", SetupChange(f"--floor {text}", shaking)) for each in _AXES if not sign or each == axis)
+
+    def _trajectory(self) -> Iterator[tuple[str, SetupChange]]:
+        word = self.trajectory
+        is_file = word is not None and word.lower().endswith(".csv")
+        if word is not None or self.amplitude is not None:
+            stated = {"kind": "file", "file": word} if is_file else {"kind": word or "step"}
+            yield "trajectory", SetupChange("--trajectory", lambda old: old if old and word in (None, old.get("kind")) else stated)
+        if self.amplitude is not None:
+            sizes = {
+                name: f"{size!r} {'rad' if name.startswith('r') else 'm'}" for name, size in motions(self.amplitude, "--amplitude").items()
+            }
+            yield "trajectory.amplitude", SetupChange("--amplitude", sizes)
+
+    def _amplifier(self) -> Iterator[tuple[str, SetupChange]]:
+        values = Values()
+        found = amplifier_values(values, self.amplifier or ())
+        require(values.findings)
+        yield from ((f"amplifier.{name}", SetupChange("--amplifier", f"{value!r} {_UNITS[name]}")) for name, value in found.items())
 
 
-def _shaking(text: str, value: str) -> forms.VibrationSetup:
-    for criterion in Criterion:
-        if value == criterion.value:
-            return forms.VibrationSetup(criterion=criterion)
+def _shaking(text: str, value: str) -> dict[str, Any]:
+    """The table of a floor's vibration: a criterion, or an amplitude density."""
+    known = [each.value for each in Criterion]
+    if value in known:
+        return {"criterion": value}
     fit = first_that_parses(value, {"acceleration": ACCELERATION_NOISE, "velocity": VELOCITY_NOISE, "displacement": NOISE_DENSITY})
     if fit is None:
-        names = ", ".join(each.value for each in Criterion)
-        advice = f'Write one of {names}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
+        advice = f'Write one of {", ".join(known)}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
         raise refuse(f"--floor {text}", f'"{value}" is no criterion and no amplitude density', advice)
-    return override(forms.VibrationSetup(), {fit[0]: (fit[1],)})
-
-
-def trajectory_setup(given: forms.TrajectorySetup, word: str | None, moves: Sequence[str] | None) -> forms.TrajectorySetup | None:
-    """The trajectory of that name, or of that file, with the sizes of its motions."""
-    found = given if word is None else _trajectory_of_name(word, given)
-    if moves is None:
-        return found if word is not None else None
-    if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
-        name = found.TOLD_BY[1]
-        raise refuse("--amplitude", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
-    return replace(found, amplitude=override(forms.AxisAmplitudes(), motions(moves, "--amplitude")))
-
-
-def _trajectory_of_name(word: str, given: forms.TrajectorySetup) -> forms.TrajectorySetup:
-    """What the set-up says where it is of that kind already, else as the kind is usual; a file where the word is one."""
-    usual = (forms.StepMotion(), forms.RasterMotion(), forms.SpiralMotion(), forms.SineMotion())
-    kinds = {each.TOLD_BY[1]: each for each in usual}
-    if word in kinds:
-        return given if type(given) is type(kinds[word]) else kinds[word]
-    if word.lower().endswith(".csv"):
-        return forms.FileMotion(word)
-    raise refuse("--trajectory", f'"{word}" is none of {", ".join(kinds)}, and no CSV file', suggest_nearest(word, kinds))
+    return {fit[0]: [value]}

@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
 from flexstage.control.plant_models.plants import Plant, sensor_filter
 from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.system import System, connect, select
+from flexstage.control.systems.system import System, connect, reachable, select
 from flexstage.models.linear.model import Channel
 
 
@@ -86,21 +86,17 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
 
 
 def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
-    """The closed loop driven by unit white inputs, and whose each input is.
+    """The closed loop driven by unit white inputs, and the source of each input.
 
-    Sampled: gauge noise is white before lag and filter and comes to the samples as these leave it, aliased exactly; without either, it is
+    Gauge noise is white before lag and filter and comes to the samples as these leave it, aliased exactly; without either, it is
     taken to end at half the sampling rate. Rounding is white with step^2/12. Amplifier noise drives the stage between the samples too,
-    and is left out here where no amplifier lag bounds it. Continuous: no rounding; what is not bounded is left out.
+    and is left out here where no amplifier lag bounds it.
 
     >>> from flexstage.control.example import integral_loop
     >>> system, sources = white_system(integral_loop(), ("relative.x",))
     >>> [source.kind.value for source in sources], system.output_names
     (['gauge noise', 'gauge rounding'], ('relative.x',))
     """
-    return _continuous_white(closed, outputs) if closed.step is None else _sampled_white(closed, outputs)
-
-
-def _sampled_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     given, systems, links, inputs, sources = closed.plant, [], {}, [], []
     for name in given.gauges:
         sensor, terms = given.hardware.sensors.get(name, Sensor()), {}
@@ -138,21 +134,12 @@ def gauge_noise(given: Plant, gauge: str, density: float) -> System:
 def _filtered_noise(filters: System, name: str, density: float, step: float) -> System:
     """The samples of white noise behind lag and filter: x[k+1] = e^{AT} x[k] + L w[k], unit w."""
     outputs = (Channel(f"coloured.{name}", filters.outputs[0].unit),)
-    used = _reachable(filters)
+    used = reachable(filters)
     if not len(used.A):
         return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{name}", "1"),), outputs, step)
     factor = held_noise(used.A, used.B * density / np.sqrt(2.0), step)
     inputs = tuple(Channel(f"white.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
     return System(scipy.linalg.expm(used.A * step), factor, used.C, np.zeros((1, len(inputs))), inputs, outputs, step)
-
-
-def _reachable(filters: System) -> System:
-    """One gauge's lag and filter without the states of the others, which nothing drives."""
-    own, reached = np.any(filters.B != 0.0, axis=1), np.zeros(0, bool)
-    while not np.array_equal(own, reached):
-        reached = own
-        own = own | np.any(filters.A[:, own] != 0.0, axis=1)
-    return replace(filters, A=filters.A[np.ix_(own, own)], B=filters.B[own], C=filters.C[:, own])
 
 
 def _with_amplifiers(
@@ -183,23 +170,3 @@ def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...
     felt = [*(f"gap.{name}" for name in given.gauges), *(name for name in outputs if name in given.system.output_names)]
     noisy = [name for name in given.actuators if name in given.hardware.amplifiers and given.hardware.amplifiers[name].noise_density]
     return tuple(name for name in noisy if not np.any(select(given.system, [name], felt).D))
-
-
-def _continuous_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
-    given = closed.plant
-    densities = {Kind.GAUGE: {name: given.hardware.sensors.get(name, Sensor()).noise_density for name in given.gauges}}
-    densities[Kind.AMPLIFIER] = {name: given.hardware.amplifiers.get(name, Amplifier()).noise_density for name in given.actuators}
-    parts = {Source(kind, name): value / np.sqrt(2.0) for kind, each in densities.items() for name, value in each.items() if value}
-    links = {f"noise.{name}": {} for name in (*given.gauges, *given.actuators)}
-    links |= {f"noise.{name}": {f"filtered.{name}": 1.0} for name in given.gauges}
-    entry = {f"noise.{name}": f"white.{name}" for name in (*given.gauges, *given.actuators)}
-    before = replace(sensor_filter(given), inputs=given.coordinates.readings("before."))
-    links |= {f"before.{name}": {} for name in given.gauges}
-    for source, size in parts.items():
-        place = f"before.{source.channel}" if source.kind is Kind.GAUGE else f"noise.{source.channel}"
-        links[place] = {entry[f"noise.{source.channel}"]: size}
-    inputs = tuple(Channel(f"white.{source.channel}", "1") for source in parts)
-    noises = [f"noise.{name}" for name in (*given.gauges, *given.actuators)]
-    whole = connect([select(closed.system, noises, outputs), before], links, inputs, outputs)
-    kept = [channel.name for column, channel in enumerate(inputs) if not np.any(whole.D[:, column])]
-    return select(whole, kept, outputs), tuple(source for source in parts if f"white.{source.channel}" in kept)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.references import transformed
 
 _NEAR, _SMALL = 1e-4, 1e-6
 """How far a design beside one is: of each number, and of numbers that are zero [SI]."""
@@ -32,7 +31,15 @@ def design(mechanism: Mechanism, place: int, share: float = 0.0) -> Mechanism:
     >>> design(fs.Mechanism("stage", gravity=(0.0, 0.0, np.array([-9.8, -1.6]))), 1).gravity[2]
     -1.6
     """
-    return _map(mechanism, place, share)
+
+    def single(_: str, value: Any) -> Any:
+        if not isinstance(value, (complex, np.ndarray)):
+            return value
+        own = value[min(place, len(value) - 1)] if isinstance(value, np.ndarray) and _is_batch(value) else value
+        near = np.asarray(np.real(own) + share * np.imag(own) if np.iscomplexobj(own) else own)
+        return float(near) if near.ndim == 0 else near
+
+    return transformed(mechanism, single)  # type: ignore[no-any-return]
 
 
 def step_size(mechanism: Mechanism) -> float:
@@ -55,30 +62,13 @@ def _is_batch(value: Array) -> bool:
     return value.ndim in (1, 3)
 
 
-def _numbers(value: Any) -> Iterator[Any]:
-    if isinstance(value, (complex, np.ndarray)):
-        yield value
-    elif is_dataclass(value):
-        yield from (each for one in fields(value) for each in _numbers(getattr(value, one.name)))
-    elif isinstance(value, Mapping):
-        yield from (each for one in value.values() for each in _numbers(one))
-    elif isinstance(value, (tuple, list)):
-        yield from (each for one in value for each in _numbers(one))
+def _numbers(mechanism: Mechanism) -> list[Any]:
+    """Arrays and complex numbers of a description."""
+    found: list[Any] = []
 
+    def note(_: str, value: Any) -> Any:
+        found.extend([value] if isinstance(value, (complex, np.ndarray)) else ())
+        return value
 
-def _map(value: Any, place: int, share: float) -> Any:
-    if isinstance(value, (complex, np.ndarray)):
-        own = value[min(place, len(value) - 1)] if isinstance(value, np.ndarray) and _is_batch(value) else value
-        near = np.asarray(np.real(own) + share * np.imag(own) if np.iscomplexobj(own) else own)
-        return float(near) if near.ndim == 0 else near
-    if is_dataclass(value) and not isinstance(value, type):
-        found = {one.name: (getattr(value, one.name), _map(getattr(value, one.name), place, share)) for one in fields(value) if one.init}
-        changed = {name: after for name, (before, after) in found.items() if after is not before}
-        return replace(value, **changed) if changed else value
-    if isinstance(value, Mapping):
-        mapped = {key: _map(each, place, share) for key, each in value.items()}
-        return mapped if any(mapped[key] is not each for key, each in value.items()) else value
-    if isinstance(value, tuple):
-        several = tuple(_map(each, place, share) for each in value)
-        return several if any(new is not old for new, old in zip(several, value, strict=True)) else value
-    return value
+    transformed(mechanism, note)
+    return found

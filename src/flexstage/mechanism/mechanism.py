@@ -38,6 +38,8 @@ NOT_GROWING = "none"
 EVERYWHERE = "all"
 """Said in place of a body: the temperature of all that has none of its own."""
 
+NAMED = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
+"""Sections of entries by name."""
 BESIDE = {"beside": True}
 """Metadata of a field that has no key of its own in a file: formulas stand where the values do."""
 

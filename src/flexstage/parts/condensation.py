@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ import scipy
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design, stack
+from flexstage.base.session import SESSION
 from flexstage.parts.mass import tensor
 from flexstage.parts.matrix_file import LARGEST_DENSE, MatrixLike, digest_of, read_matrices
 from flexstage.parts.superelement import FileUnits, Port, Superelement
@@ -74,7 +74,7 @@ def _at(where: str, finding: Finding) -> Finding:
     return replace(finding, where=where, what=f"{finding.where}: {finding.what}")
 
 
-@lru_cache(maxsize=16)
+@SESSION.keep(16)
 def _condensed(part: Superelement) -> Condensed | DesignError:
     try:
         return _reduce(part, *read_matrices(part))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array, Number, stack
+from flexstage.base.session import SESSION
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Imported, Inertia, Pierced, Solid, Sphere
 from flexstage.parts.material import Material
 from flexstage.parts.union import Drawn, Moments, common_moments, polygon_moments
@@ -45,7 +45,7 @@ def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "
     return _drawn_mass(body, tuple((key, materials[key]) for key in dict.fromkeys(each.material for each in body.solids.values())), name)
 
 
-@lru_cache(maxsize=32)
+@SESSION.keep(32)
 def _drawn_mass(body: Body, materials: tuple[tuple[str, Material], ...], name: str) -> MassProperties:
     """The mass of what is drawn, kept: many descriptions that differ in their links have the same bodies."""
     return union_properties(drawn_solids(body, dict(materials), name, identity()))

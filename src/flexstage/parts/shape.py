@@ -6,7 +6,7 @@ Outlines, pictures, contact, columns and finite elements ask the part; none of t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import reduce
 from itertools import pairwise
@@ -101,10 +101,6 @@ class Elastic(Description):
     def faults(self) -> Iterator[Finding]:
         """What else is wrong with its numbers, by field."""
         yield from ()
-
-    def with_paths(self, change: Callable[[str], str]) -> Elastic:  # noqa: ARG002
-        """The part with the paths of files it is known by changed."""
-        return self
 
 
 def reversed_or_none(value: Number | None) -> Number | None:

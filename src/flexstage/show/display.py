@@ -28,57 +28,56 @@ class DisplayUnit:
     factor: float
 
 
-# Per SI unit its display units, smallest first; the preferred one stands again in _PREFERRED.
-_LADDERS: dict[str, tuple[tuple[str, float], ...]] = {
-    "m": (("pm", 1e12), ("nm", 1e9), ("um", 1e6), ("mm", 1e3), ("m", 1.0)),
-    "rad": (("nrad", 1e9), ("urad", 1e6), ("mrad", 1e3), ("rad", 1.0)),
-    "N": (("mN", 1e3), ("N", 1.0), ("kN", 1e-3), ("MN", 1e-6)),
-    "N m": (("mN m", 1e3), ("N m", 1.0), ("kN m", 1e-3)),
-    "Pa": (("kPa", 1e-3), ("MPa", 1e-6), ("GPa", 1e-9)),
-    "Hz": (("Hz", 1.0), ("kHz", 1e-3)),
-    "J": (("uJ", 1e6), ("mJ", 1e3), ("J", 1.0)),
-    "kg": (("g", 1e3), ("kg", 1.0)),
-    "N/m": (("N/m", 1.0), ("N/mm", 1e-3), ("N/um", 1e-6), ("N/nm", 1e-9)),
-    "N/rad": (("N/rad", 1.0), ("N/mrad", 1e-3), ("N/urad", 1e-6)),
-    "N m/m": (("N m/m", 1.0), ("N m/mm", 1e-3), ("N m/um", 1e-6)),
-    "N m/rad": (("N m/rad", 1.0), ("N m/mrad", 1e-3), ("N m/urad", 1e-6)),
-    "m/N": (("nm/N", 1e9), ("um/N", 1e6), ("mm/N", 1e3)),
-    "rad/N": (("nrad/N", 1e9), ("urad/N", 1e6), ("mrad/N", 1e3)),
-    "m/(N m)": (("nm/(N m)", 1e9), ("um/(N m)", 1e6), ("mm/(N m)", 1e3)),
-    "rad/(N m)": (("nrad/(N m)", 1e9), ("urad/(N m)", 1e6), ("mrad/(N m)", 1e3)),
-    "m/rad": (("mm/rad", 1e3),),
-    "rad/m": (("urad/um", 1.0),),
-    "m/K": (("nm/K", 1e9), ("um/K", 1e6), ("mm/K", 1e3)),
-    "rad/K": (("nrad/K", 1e9), ("urad/K", 1e6), ("mrad/K", 1e3)),
-    "m/V": (("nm/V", 1e9), ("um/V", 1e6), ("mm/V", 1e3)),
-    "V/m": (("V/um", 1e-6),),
-    "J/m^2": (("uJ/um^2", 1e-6),),
-    "N/Hz^0.5": (("N/Hz^0.5", 1.0),),
-    "m/Hz^0.5": (("nm/Hz^0.5", 1e9),),
-    "rad/Hz^0.5": (("nrad/Hz^0.5", 1e9),),
-    "%": (("%", 1e2),),
+# Per SI unit its display units, the preferred one first.
+UNITS: dict[str, str] = {
+    "m": "um, pm, nm, mm, m",
+    "rad": "urad, nrad, mrad, rad",
+    "N": "N, mN, kN, MN",
+    "N m": "N m, mN m, kN m",
+    "Pa": "MPa, kPa, GPa",
+    "Hz": "Hz, kHz",
+    "J": "mJ, uJ, J",
+    "kg": "kg, g",
+    "N/m": "N/um, N/m, N/mm, N/nm",
+    "N/rad": "N/mrad, N/rad, N/urad",
+    "N m/m": "N m/mm, N m/m, N m/um",
+    "N m/rad": "N m/mrad, N m/rad, N m/urad",
+    "m/N": "um/N, nm/N, mm/N",
+    "rad/N": "urad/N, nrad/N, mrad/N",
+    "m/(N m)": "um/(N m), nm/(N m), mm/(N m)",
+    "rad/(N m)": "urad/(N m), nrad/(N m), mrad/(N m)",
+    "m/rad": "mm/rad",
+    "rad/m": "urad/um",
+    "m/K": "nm/K, um/K, mm/K",
+    "rad/K": "nrad/K, urad/K, mrad/K",
+    "m/V": "um/V, nm/V, mm/V",
+    "V/m": "V/um",
+    "J/m^2": "uJ/um^2",
+    "N/Hz^0.5": "N/Hz^0.5",
+    "m/Hz^0.5": "nm/Hz^0.5",
+    "rad/Hz^0.5": "nrad/Hz^0.5",
+    "%": "%",
 }
-_PREFERRED = {
-    "m": "um",
-    "rad": "urad",
-    "N": "N",
-    "N m": "N m",
-    "Pa": "MPa",
-    "Hz": "Hz",
-    "J": "mJ",
-    "kg": "kg",
-    "N/m": "N/um",
-    "N/rad": "N/mrad",
-    "N m/m": "N m/mm",
-    "N m/rad": "N m/mrad",
-    "m/N": "um/N",
-    "rad/N": "urad/N",
-    "m/(N m)": "um/(N m)",
-    "rad/(N m)": "urad/(N m)",
-    "m/K": "nm/K",
-    "rad/K": "nrad/K",
-    "m/V": "um/V",
-}
+_FACTORS = {"%": 1e2, "g": 1e3}
+_PREFIXES = {"p": 12, "n": 9, "u": 6, "m": 3, "": 0, "k": -3, "M": -6, "G": -9}
+
+
+@lru_cache(maxsize=64)
+def ladder(unit: str) -> dict[str, float]:
+    """Return the display units of an SI unit with their factors, the smallest unit first.
+
+    >>> ladder("Hz")
+    {'Hz': 1.0, 'kHz': 0.001}
+    """
+    names = filter(None, UNITS.get(unit, "").split(", "))
+    return dict(sorted(((name, _FACTORS.get(name) or _factor(name, unit)) for name in names), key=lambda each: -each[1]))
+
+
+def _factor(name: str, unit: str) -> float:
+    """Display units per SI unit, by the prefixes above and below the line."""
+    (top, _, bottom), (whole, _, share) = name.partition("/"), unit.partition("/")
+    below = _PREFIXES[bottom.removesuffix(share)] * (2 if share.endswith("^2") else 1)
+    return 10.0 ** (_PREFIXES[top.removesuffix(whole)] - below)
 
 
 def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit:
@@ -87,15 +86,14 @@ def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit
     >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')
     """
-    ladder = _LADDERS.get(unit)
-    if ladder is None:
+    factors = ladder(unit)
+    if not factors:
         return DisplayUnit(unit, 1.0)
-    factors = dict(ladder)
-    preferred = next((name for name in shown if name in factors), _PREFERRED.get(unit, ladder[0][0]))
+    preferred = next(name for name in (*shown, UNITS[unit].partition(", ")[0]) if name in factors)
     if preferred in shown or largest == 0.0 or not math.isfinite(largest) or _TOO_SMALL <= largest * factors[preferred] < _TOO_LARGE:
         return DisplayUnit(preferred, factors[preferred])
-    fitting = [name for name, factor in ladder if largest * factor >= 1.0]
-    chosen = fitting[-1] if fitting else ladder[0][0]
+    fitting = [name for name, factor in factors.items() if largest * factor >= 1.0]
+    chosen = (fitting or list(factors)[:1])[-1]
     return DisplayUnit(chosen, factors[chosen])
 
 
@@ -128,8 +126,7 @@ def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
     """
     if quantity is None or quantity.shown == "1":
         return DisplayUnit(unit, 100.0 if unit == "%" else 1.0)
-    ladder = dict(_LADDERS.get(quantity.si, ()))
-    return DisplayUnit(unit, ladder[unit]) if unit else field_unit(quantity)
+    return DisplayUnit(unit, ladder(quantity.si)[unit]) if unit else field_unit(quantity)
 
 
 def number(value: float, digits: int = DIGITS) -> str:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.cases.parameters import parameters
-from flexstage.cases.registry import CASES, shipped_case
+from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.catalogue import Catalogue, Section
 from flexstage.mechanism.grammar.grammar import TAGS
 from flexstage.parts.gauge import Gauge
@@ -37,10 +36,8 @@ def parameter_table(name: str) -> Table | None:
     >>> parameter_table("parallelogram").texts()[-2]
     ['spacing', 'length', '50 mm']
     """
-    own = shipped_case(name).parameters
-    rows = {each.name: (each.kind, each.text) for each in parameters(own).values()}
-    meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
-    notes = [meaning, f"flexstage new stage.toml --case {name} --case-parameter NAME=VALUE"]
+    rows = {each.name: (each.quantity.name, each.text) for each in parameters(case(name)).values()}
+    notes = ["The named numbers of its file.", f"flexstage new stage.toml --case {name} --case-parameter NAME=VALUE"]
     return text_table(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
 
 

@@ -7,7 +7,7 @@ HOMES = {
     "fea.meshing.fineness": "Fineness Reduction",
     "fea.meshing.estimate": "Accuracy",
     "fea.hinges.hinge": "hinge_compliance",
-    "fea.solver.model": "model",
+    "results.read": "model",
     "exchange.matrices": "export_superelement",
     "show.moving": "to_glb",
     "results.resolution": "Resolution",

@@ -17,7 +17,7 @@ from flexstage.solid.fea.meshing.fineness import (
 from flexstage.solid.fea.hinges.hinge import (
     hinge_compliance as hinge_compliance,
 )
-from flexstage.solid.fea.solver.model import (
+from flexstage.solid.results.read import (
     model as model,
 )
 from flexstage.solid.results.hinges import (

@@ -1,1 +1,1 @@
-"""Frames, twists and wrenches: the only home of component order, reference point and 6x6 transport."""
+"""Frames, twists and wrenches: component order, reference point and 6x6 transport are defined here only."""

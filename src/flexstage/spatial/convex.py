@@ -1,4 +1,4 @@
-"""Convex polytopes in space: whether two of them meet, how deep, and how far apart they are."""
+"""Convex polytopes in space: intersection, penetration depth and distance."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 from flexstage.spatial.frame import Frame
 
 _PARALLEL = 1e-9
-"""Crossed edges shorter than this are parallel and separate nothing."""
+"""Cross products of edges shorter than this are parallel and separate nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,18 +25,18 @@ class Convex:
     edges: Array
 
     def within(self, frame: Frame) -> Convex:
-        """The same polytope seen from the frame that `frame` stands in."""
+        """Return the same polytope in the outer frame of `frame`."""
         turn = frame.rotation.T
         return Convex(frame.position + self.points @ turn, self.normals @ turn, self.edges @ turn)
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """Low and high corner of the box around it, along the axes."""
+        """Lower and upper corner of the bounding box along the axes."""
         return self.points.min(axis=0), self.points.max(axis=0)
 
 
 def cuboid(low: Sequence[float], high: Sequence[float]) -> Convex:
-    """The box between two corners.
+    """Build the box between two corners.
 
     >>> cuboid((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)).points.max(axis=0).tolist()
     [1.0, 2.0, 3.0]
@@ -47,25 +47,25 @@ def cuboid(low: Sequence[float], high: Sequence[float]) -> Convex:
 
 @dataclass(frozen=True)
 class Boxes:
-    """Boxes by their `turns` (..., 3, 3), the rotations whose columns are their axes, `centres` and half sizes `halves` (..., 3) [m]."""
+    """Boxes by `turns` (..., 3, 3), rotations whose columns are their axes, `centres` and half sizes `halves` (..., 3) [m]."""
 
     turns: Array
     centres: Array
     halves: Array
 
     def pick(self, which: Array) -> Boxes:
-        """Some of them, in that order."""
+        """Select boxes by index, in that order."""
         return Boxes(self.turns[which], self.centres[which], self.halves[which])
 
 
-def frustum(here: float, there: float, one: Array, other: Array) -> Convex:
-    """The hull of two polygons (n, 2) in the planes x = `here` and x = `there`, counter-clockwise in (y, z) with parallel sides.
+def frustum(low: float, high: float, one: Array, other: Array) -> Convex:
+    """Build the hull of two polygons (n, 2) in the planes x = `here` and x = `there`, counter-clockwise in (y, z) with parallel sides.
 
     >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     >>> frustum(0.0, 2.0, square, square).points.max(axis=0).tolist()
     [2.0, 1.0, 1.0]
     """
-    first, last = (np.column_stack([np.full(len(section), station), section]) for station, section in ((here, one), (there, other)))
+    first, last = (np.column_stack([np.full(len(section), station), section]) for station, section in ((low, one), (high, other)))
     wide = first if np.ptp(first) >= np.ptp(last) else last
     rim, slant = np.roll(wide, -1, axis=0) - wide, last - first
     sides = np.cross(rim, slant)
@@ -80,10 +80,10 @@ def _unit(vectors: Array) -> Array:
 
 
 def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
-    """The widest gap between two polytopes over the directions that can part them [m], that direction, the widest gap in any other one.
+    """Return the largest gap of two polytopes over all directions [m], its direction, and the second largest gap.
 
-    The unit direction leads from the first to the second; a negative gap is how deep they meet. Exact for polytopes that meet, a lower
-    bound of the distance of those that do not.
+    The unit direction is from the first to the second; a negative gap is the penetration depth. Exact for polytopes that intersect, a lower
+    bound of the distance otherwise.
 
     >>> gap, direction, other = separation(cuboid((0, 0, 0), (1, 1, 1)), cuboid((0.9, 0.2, 0.0), (2, 1, 1)))
     >>> round(gap, 9), direction.tolist(), round(other, 9)
@@ -93,8 +93,8 @@ def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
     lengths = np.linalg.norm(crossed, axis=1)
     apart = lengths > _PARALLEL
     directions = np.concatenate([first.normals, second.normals, crossed[apart] / lengths[apart, None]])
-    here, there = first.points @ directions.T, second.points @ directions.T
-    ahead, behind = there.min(axis=0) - here.max(axis=0), here.min(axis=0) - there.max(axis=0)
+    first_extent, second_extent = first.points @ directions.T, second.points @ directions.T
+    ahead, behind = second_extent.min(axis=0) - first_extent.max(axis=0), first_extent.min(axis=0) - second_extent.max(axis=0)
     gaps = np.maximum(ahead, behind)
     widest = int(np.argmax(gaps))
     unit = directions[widest] * (1.0 if ahead[widest] >= behind[widest] else -1.0)
@@ -103,23 +103,24 @@ def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
 
 
 def polytope_corners(normals: Array, offsets: Array) -> Array:
-    """Corners (n, 3) of the polytope of all r with `normals` (k, 3) r <= `offsets` (k,); none where it is empty.
+    """Compute the corners (n, 3) of the polytope of all r with `normals` (k, 3) r <= `offsets` (k,); empty if infeasible.
 
     >>> len(polytope_corners(np.concatenate([np.eye(3), -np.eye(3)]), np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])))
     8
     """
-    wanted = np.column_stack([normals, np.linalg.norm(normals, axis=1)])
-    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], A_ub=wanted, b_ub=offsets, bounds=(None, None))
+    planes = np.column_stack([normals, np.linalg.norm(normals, axis=1)])
+    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], A_ub=planes, b_ub=offsets, bounds=(None, None))
     if ball.x is None or ball.x[3] <= 0.0:
         return np.zeros((0, 3))
     return scipy.spatial.HalfspaceIntersection(np.column_stack([normals, -offsets]), ball.x[:3]).intersections
 
 
 def distance(first: Array, second: Array) -> float:
-    """Distance of the hulls of two sets of points (n, 3) [m], 0 where they meet.
+    """Compute the distance of the hulls of two sets of points (n, 3) [m], 0 if they intersect.
 
-    The plane w . r = c that parts them with w . (b - a) >= 1 and the shortest w: their distance is 1 / |w|. That is a least-distance
-    problem, solved by non-negative least squares (Lawson and Hanson 1974, chapter 23).
+    The separating plane w . r = c has w . (b - a) >= 1 and the shortest w: the distance is 1 / |w|.
+
+    This is a least-distance problem, solved by non-negative least squares (Lawson and Hanson 1974, chapter 23).
 
     >>> round(distance(cuboid((0, 0, 0), (1, 1, 1)).points, cuboid((2, 2, 0), (3, 3, 1)).points), 9)
     1.414213562
@@ -131,15 +132,15 @@ def distance(first: Array, second: Array) -> float:
     matrix = np.concatenate([between.T / scale, np.ones((1, len(between)))])
     try:
         weights, _ = scipy.optimize.nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]), maxiter=100 * matrix.shape[1])
-    except RuntimeError:  # corners so near that rounding makes the choice among them go round: that of two corners is as good
+    except RuntimeError:  # corners so close that rounding makes the selection cycle: the distance of two corners is as good
         return float(np.min(np.linalg.norm(between, axis=1)))
-    rest = matrix @ weights - np.array([0.0, 0.0, 0.0, 1.0])
-    size = float(np.linalg.norm(rest[:3]))
-    return 0.0 if -rest[3] <= 1e-15 or size <= 1e-15 else scale * float(-rest[3]) / size
+    residual = matrix @ weights - np.array([0.0, 0.0, 0.0, 1.0])
+    size = float(np.linalg.norm(residual[:3]))
+    return 0.0 if -residual[3] <= 1e-15 or size <= 1e-15 else scale * float(-residual[3]) / size
 
 
 def separations(ones: Boxes, others: Boxes) -> Array:
-    """A lower bound (k,) [m] of the distances of k boxes from k others; below 0: they meet. Turns may be those of all, (1, 3, 3).
+    """Compute lower bounds (k,) [m] of the distances of k boxes from k others; negative if they intersect. Shared turns are (1, 3, 3).
 
     >>> box = Boxes(np.eye(3)[None], np.zeros((1, 3)), np.full((1, 3), 0.5))
     >>> other = Boxes(np.eye(3)[None], np.array([[2.0, 0.0, 0.0]]), np.full((1, 3), 0.5))

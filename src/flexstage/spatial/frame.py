@@ -1,4 +1,4 @@
-"""Frames, twists and wrenches: the only home of component order, reference point and 6x6 transport.
+"""Frames, twists and wrenches: component order, reference point and 6x6 transport are defined here only.
 
 Twists and wrenches are 6-vectors (x, y, z, rx, ry, rz): translations then rotations, forces then moments, at a named reference point.
 Small motions. All arrays may carry leading batch axes and may be complex.
@@ -19,17 +19,20 @@ TWIST_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 MOTION = UnitOf(lambda name: TWIST_UNITS[COMPONENTS.index(name)])
-"""Annotates motions by coordinate: x in m, rz in rad."""
+"""Annotation of twists by coordinate: x in m, rz in rad."""
+
+WRENCH = UnitOf(lambda name: WRENCH_UNITS[COMPONENTS.index(name)])
+"""Annotates loads by the coordinate they work along: x in N, rz in N m."""
 
 _UNIT = np.eye(6)
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A frame in another: `rotation` (..., 3, 3), columns are its axes, and `position` (..., 3) of its origin.
+    """A frame relative to another: `rotation` (..., 3, 3) has its axes as columns, `position` (..., 3) is its origin.
 
-    `mirrored`: its axes are left-handed, as those of a frame seen in a mirror; points, directions and inertias go through it as through
-    any other, twists do not: their frame is made `right_handed` first.
+    `mirrored`: left-handed axes, as of a frame seen in a mirror. Points, directions and inertias transform as usual; twists do not, so that
+    their frame is made `right_handed` first.
     """
 
     rotation: Array
@@ -37,7 +40,7 @@ class Frame:
     mirrored: bool = False
 
     def within(self, outer: Frame) -> Frame:
-        """The same frame seen from the frame that `outer` stands in.
+        """Return the same frame in the outer frame of `outer`.
 
         >>> inner = Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))
         >>> inner.within(Frame(turn_z(np.pi / 2), np.zeros(3))).position.round(12).tolist()
@@ -47,7 +50,7 @@ class Frame:
 
     @property
     def right_handed(self) -> Frame:
-        """The same frame, its y axis reversed if it is mirrored.
+        """Return the same frame, with the y axis reversed if it is mirrored.
 
         >>> reflection(0).right_handed.rotation.diagonal().tolist()
         [-1.0, -1.0, 1.0]
@@ -55,16 +58,16 @@ class Frame:
         return Frame(self.rotation * np.array([1.0, -1.0, 1.0]), self.position) if self.mirrored else self
 
     def point(self, point: Array) -> Array:
-        """A point (..., 3) given in this frame, in the frame it stands in."""
+        """Transform a point (..., 3) of this frame to the outer frame."""
         return self.position + (self.rotation @ point[..., None])[..., 0]
 
     def direction(self, direction: Array) -> Array:
-        """A direction (..., 3) given in this frame, in the frame it stands in."""
+        """Transform a direction (..., 3) of this frame to the outer frame."""
         return (self.rotation @ direction[..., None])[..., 0]
 
 
 def identity() -> Frame:
-    """The frame itself.
+    """Return the identity frame.
 
     >>> identity().position.tolist()
     [0.0, 0.0, 0.0]
@@ -73,7 +76,7 @@ def identity() -> Frame:
 
 
 def reflection(axis: int) -> Frame:
-    """The left-handed frame in which everything is its own image in the plane through the origin across an axis (0, 1, 2).
+    """Return the left-handed frame of the mirror plane through the origin across an axis (0, 1, 2).
 
     >>> reflection(1).point(np.array([1.0, 2.0, 3.0])).tolist()
     [1.0, -2.0, 3.0]
@@ -82,7 +85,7 @@ def reflection(axis: int) -> Frame:
 
 
 def cross_matrix(vector: Array) -> Array:
-    """The matrix [v]x with [v]x w = v x w.
+    """Build the cross-product matrix [v]x with [v]x w = v x w.
 
     >>> (cross_matrix(np.array([0.0, 0.0, 1.0])) @ np.array([1.0, 0.0, 0.0])).tolist()
     [0.0, 1.0, 0.0]
@@ -96,9 +99,9 @@ def cross_matrix(vector: Array) -> Array:
 
 
 def transport(arm: Array) -> Array:
-    """The 6x6 X that carries a twist at a point P to the point P + arm: v' = v + w x arm.
+    """Build the 6x6 X that moves a twist from a point P to the point P + arm: v' = v + w x arm.
 
-    Wrenches go the other way: w_P = X^T w_(P + arm).
+    Wrenches transform in the opposite direction: w_P = X^T w_(P + arm).
 
     >>> (transport(np.array([1.0, 0.0, 0.0])) @ np.array([0, 0, 0, 0, 0, 1.0])).tolist()
     [0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
@@ -111,7 +114,7 @@ def transport(arm: Array) -> Array:
 
 
 def mirror(axis: int) -> Array:
-    """The 6x6 that shows a twist in a mirror across an axis (0, 1, 2) at the origin: v reversed along it, w reversed across it.
+    """Build the 6x6 that mirrors a twist across an axis (0, 1, 2) at the origin: v reversed along it, w reversed across it.
 
     >>> mirror(0).diagonal().tolist()
     [-1.0, 1.0, 1.0, 1.0, -1.0, -1.0]
@@ -121,7 +124,7 @@ def mirror(axis: int) -> Array:
 
 
 def spatial_rotation(rotation: Array) -> Array:
-    """The 6x6 diag(R, R) that turns twists and wrenches from a frame of axes R to the outer axes.
+    """Build the 6x6 diag(R, R) that rotates twists and wrenches from a frame of axes R to the outer axes.
 
     >>> spatial_rotation(np.eye(3)).shape
     (6, 6)
@@ -133,7 +136,7 @@ def spatial_rotation(rotation: Array) -> Array:
 
 
 def twist_transform(frame: Frame, reference: Array) -> Array:
-    """The 6x6 that takes a body's twist at `reference` (outer axes) to the twist at the frame's origin, in the frame's axes.
+    """Build the 6x6 from a body's twist at `reference` (outer axes) to the twist at the frame's origin, in the frame's axes.
 
     >>> twist_transform(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
     True
@@ -148,7 +151,7 @@ def twist_transform(frame: Frame, reference: Array) -> Array:
 
 
 def turn_z(angle: Number) -> Array:
-    """Rotation matrix by `angle` [rad] about z.
+    """Build the rotation matrix by `angle` [rad] about z.
 
     >>> turn_z(0.0).tolist()
     [[1.0, -0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -159,7 +162,7 @@ def turn_z(angle: Number) -> Array:
 
 
 def normalise(vector: Array) -> Array:
-    """The vector divided by its length (complex-analytic: no conjugates).
+    """Normalise a vector to unit length (complex-analytic: no conjugates).
 
     >>> normalise(np.array([3.0, 0.0, 4.0])).tolist()
     [0.6, 0.0, 0.8]
@@ -168,9 +171,9 @@ def normalise(vector: Array) -> Array:
 
 
 def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
-    """Rotation matrix whose x axis is `along` and whose z axis is `up`, made unit and exactly perpendicular to x.
+    """Build the rotation matrix with x axis `along` and z axis `up`, made unit and exactly perpendicular to x.
 
-    Without `up`: the stage's z axis made perpendicular, or the y axis where `along` is within 5 degrees of z.
+    Without `up`: the stage's z axis made perpendicular, or the y axis if `along` is within 5 degrees of z.
 
     >>> axes((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)).tolist()
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -187,7 +190,7 @@ def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
 
 
 def rigid_inertia(mass: Number, inertia: Array, centre: Array, reference: Array) -> Array:
-    """6x6 inertia of a rigid body for its twist at `reference`; `inertia` (..., 3, 3) is about its centre of mass `centre` [SI].
+    """Build the 6x6 inertia of a rigid body for its twist at `reference`; `inertia` (..., 3, 3) is about the centre of mass `centre` [SI].
 
     M = X^T diag(m I, J) X with X the transport from the reference to the centre of mass.
 

@@ -1,6 +1,6 @@
 """Finite rotations: rotation vectors and rotation matrices (exponential and logarithm of SO(3)).
 
-A rotation vector points along the axis, its length is the angle [rad]. All arrays may carry leading batch axes and may be complex.
+A rotation vector points along the axis; its length is the angle [rad]. All arrays may have leading batch axes and may be complex.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ _SMALL = 1e-4
 
 
 def exponential(vector: Array) -> Array:
-    """Rotation matrix (..., 3, 3) of a rotation vector (..., 3) [rad]: Rodrigues, R = I + sin t/t [v]x + (1 - cos t)/t^2 [v]x^2.
+    """Compute the rotation matrix (..., 3, 3) of a rotation vector (..., 3) [rad] (Rodrigues' formula).
+
+    R = I + sin t/t [v]x + (1 - cos t)/t^2 [v]x^2.
 
     >>> exponential(np.array([0.0, 0.0, np.pi / 2])).round(12).tolist()
     [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
@@ -32,7 +34,7 @@ def exponential(vector: Array) -> Array:
 
 
 def logarithm(rotation: Array) -> Array:
-    """Rotation vector (..., 3) [rad] of a rotation matrix (..., 3, 3), for angles below pi (3.1 is safe).
+    """Compute the rotation vector (..., 3) [rad] of a rotation matrix (..., 3, 3), for angles below pi (3.1 is safe).
 
     With s = sin t and c = cos t from the antisymmetric part and the trace, t = 2 atan(s / (1 + c)).
 
@@ -51,9 +53,9 @@ def logarithm(rotation: Array) -> Array:
 
 
 def rotation_vector(rotation: Array) -> Array:
-    """Rotation vector (3,) [rad] of one real rotation matrix (3, 3), for every angle up to pi.
+    """Compute the rotation vector (3,) [rad] of one real rotation matrix (3, 3), for every angle up to pi.
 
-    By the unit quaternion, its largest component first (Shepperd, J. Guid. Control 1, 223, 1978): exact where `logarithm` has none.
+    Uses the unit quaternion, largest component first (Shepperd, J. Guid. Control 1, 223, 1978): exact where `logarithm` is singular.
 
     >>> (rotation_vector(np.diag([-1.0, 1.0, -1.0])) / np.pi).tolist()
     [0.0, 1.0, 0.0]
@@ -76,7 +78,7 @@ def rotation_vector(rotation: Array) -> Array:
 
 
 def logarithm_rate(vector: Array) -> Array:
-    """The matrix J (..., 3, 3) with log(exp(w) R) = v + J w for small w, where v = log R: the inverse of the left Jacobian of SO(3).
+    """Compute the inverse left Jacobian J (..., 3, 3) of SO(3): log(exp(w) R) = v + J w for small w, where v = log R.
 
     J = I - [v]x / 2 + (1 - (t/2) cot(t/2)) / t^2 [v]x^2 (Chirikjian, Stochastic Models, Information Theory, and Lie Groups 2, 10.86).
 
@@ -93,7 +95,7 @@ def logarithm_rate(vector: Array) -> Array:
 
 
 def exponential_rate(vector: Array) -> Array:
-    """The matrix T (..., 3, 3) with exp(v + d) = exp(T d) exp(v) for small d: the left Jacobian of SO(3), inverse of `logarithm_rate`.
+    """Compute the left Jacobian T (..., 3, 3) of SO(3): exp(v + d) = exp(T d) exp(v) for small d; the inverse of `logarithm_rate`.
 
     T = I + (1 - cos t)/t^2 [v]x + (t - sin t)/t^3 [v]x^2 (Chirikjian 2, 10.86).
 
@@ -112,13 +114,14 @@ def exponential_rate(vector: Array) -> Array:
 
 
 GAUSS_THREE: Array = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
-"""Where a `magnus` step takes its three values, as shares of the step."""
+"""Gauss points of a `magnus` step, as fractions of the step."""
 
 
 def magnus(step: Array, first: Array, middle: Array, last: Array) -> Array:
-    """Rotation vector (..., 3) of the step of R' = R [k]x over the length `step` (...), from k (..., 3) at its three Gauss points.
+    """Compute the rotation vector (..., 3) of the step of R' = R [k]x over the length `step` (...), from k (..., 3) at three Gauss points.
 
-    Order 6 (Blanes, Casas, Oteo and Ros, Physics Reports 470, 2009, 5.2; their Y' = A Y, so all brackets change sign): R becomes R exp(W).
+    Order 6 (Blanes, Casas, Oteo and Ros, Physics Reports 470, 2009, 5.2; their Y' = A Y, so that all brackets change sign): R becomes R
+    exp(W).
 
     >>> magnus(np.array(2.0), *np.tile([0.1, 0.0, 0.3], (3, 1))).round(12).tolist()
     [0.2, 0.0, 0.6]
@@ -133,7 +136,7 @@ def magnus(step: Array, first: Array, middle: Array, last: Array) -> Array:
 
 
 def cross(one: Array, other: Array) -> Array:
-    """The product one x other of vectors (..., 3), faster than numpy's.
+    """Compute the cross product of vectors (..., 3), faster than numpy's.
 
     >>> cross(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])).tolist()
     [0.0, 0.0, 1.0]

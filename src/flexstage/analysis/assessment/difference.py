@@ -21,7 +21,7 @@ from flexstage.base.record import INNER, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import SHARE
 from flexstage.mechanism.addresses.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, WRENCH_UNITS
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckli
     """Strokes of the platform, and how far hinges and columns are from their limits."""
     if strokes is not None:
         for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
-            yield KeyFigure(f"stroke.{name}", TWIST_UNITS[COMPONENTS.index(name)], float(value))
+            yield KeyFigure(f"stroke.{name}", MOTION.unit(name), float(value))
     if stress is not None and stress.links:
         yield KeyFigure("safety", "1", float(stress.min_safety))
     if buckling is not None and buckling.links:

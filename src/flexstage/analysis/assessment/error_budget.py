@@ -13,7 +13,7 @@ from flexstage.analysis.workspace.gauging import PoseResolution
 from flexstage.analysis.workspace.map_error import MapError
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, stack
 from flexstage.base.record import VIEW
 from flexstage.base.units.quantity import TEMPERATURE
@@ -45,8 +45,7 @@ class Evidence:
     steps: Array | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class ErrorBudget(InNotebook):
+class ErrorBudget(Result):
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
     `missing` names sources that could not be counted (no gauge noise stated): they are NaN and left out of the sums. `ground` is what drift
@@ -171,6 +170,6 @@ def _resolution_errors(resolution: PoseResolution, carry: Array) -> Array:
 
 
 def _table(columns: tuple[Array, ...]) -> Matrix:
-    values = np.stack(np.broadcast_arrays(*columns), axis=-1)
+    values = stack(list(columns))
     sources = (*SOURCES, STEPS)[: len(columns)]
     return Matrix(values, COMPONENTS, sources, tuple((unit,) * len(sources) for unit in TWIST_UNITS))

@@ -7,7 +7,7 @@ derivatives are analytic, d lambda = phi^T (dK - lambda dM) phi.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -19,7 +19,7 @@ from flexstage.analysis.loaded.standing import standing
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Table
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import VIEW, Along, Called
@@ -38,8 +38,7 @@ _STEP = 1e-20
 _CHUNK = 24
 
 
-@dataclass(frozen=True, eq=False)
-class Sensitivities(InNotebook):
+class Sensitivities(Result):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
     `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
 from flexstage.base.record import INNER, VIEW, Heading, Layout, Mark
 from flexstage.base.units.quantity import FREQUENCY, SHARE
@@ -63,8 +63,7 @@ class Mode:
         return "platform" if self.platform else "local, near" if self.local else "local"
 
 
-@dataclass(frozen=True, eq=False)
-class Modes(InNotebook):
+class Modes(Result):
     """Undamped modes of a stage, ascending.
 
     `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)
@@ -386,15 +385,3 @@ def modal_assurance(first: Array, second: Array, weight: Array | None = None) ->
     values = cross / (own[0][..., :, None] * own[1][..., None, :])
     rows, columns = (tuple(str(index + 1) for index in range(shape.shape[-1])) for shape in (first, second))
     return Matrix(values, rows, columns, "1")
-
-
-def subspace_angle(first: Array, second: Array, weight: Array | None = None) -> float:
-    """Largest principal angle [rad] between the spaces of shapes (n, k) and (n, m): how far repeated modes agree as subspaces.
-
-    >>> round(subspace_angle(np.eye(3)[:, :2], np.eye(3)[:, :2] @ np.array([[1.0, 1.0], [1.0, -1.0]])), 7)
-    0.0
-    """
-    half = np.eye(first.shape[-2]) if weight is None else np.linalg.cholesky(weight).T
-    left, right = (np.linalg.qr(half @ shape)[0] for shape in (first, second))
-    distance = right - left @ (left.conj().T @ right)
-    return float(np.arcsin(np.clip(np.linalg.norm(distance, 2), 0.0, 1.0)))

@@ -12,7 +12,7 @@ import numpy as np
 from flexstage.analysis.dynamics.modes import average, repeated_groups
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.base.units.quantity import FREQUENCY
@@ -62,8 +62,7 @@ class Spectrum(CheckedFields):
         return np.where(inside, np.exp(table), 0.0) * scale
 
 
-@dataclass(frozen=True, eq=False)
-class RandomResponse(InNotebook):
+class RandomResponse(Result):
     """One-sided densities (..., f, p) of outputs [unit^2/Hz] and their rms values (..., p) [unit] over the band, with each input's share.
 
     `shares` (..., p, m) are the mean squares from each input (inputs are uncorrelated, so they add up to rms^2). `method` states how the

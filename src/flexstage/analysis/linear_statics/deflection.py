@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array
+from flexstage.base.notebook import Result
+from flexstage.base.number import Array, stack
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
-@dataclass(frozen=True, eq=False)
-class Deflection(InNotebook):
+class Deflection(Result):
     """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each stated force.
 
     Under a controlled stage the gauges see it and the strokes take it back; in open loop it is Eq. 11's load term.
@@ -45,7 +42,7 @@ def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFOR
     True
     """
     causes = dead_loads(mechanism, model)
-    motion = displacement(model, np.stack(np.broadcast_arrays(*causes.values()), axis=-1))
+    motion = displacement(model, stack(list(causes.values())))
     rows = tuple(f"{point}.{name}" for name in COMPONENTS)
     values = model.seen(model.output_index(rows), motion)
     unit = tuple((name,) * len(causes) for name in TWIST_UNITS)

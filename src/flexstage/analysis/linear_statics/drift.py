@@ -16,7 +16,7 @@ from flexstage.analysis.linear_statics.lost_motion import LOADED
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Vector, stack
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import LENGTH
@@ -36,8 +36,7 @@ _FIELD_UNITS = ("K", "K/m", "K/m", "K/m")
 _FITS = 1e-7
 
 
-@dataclass(frozen=True, eq=False)
-class Drift(InNotebook):
+class Drift(Result):
     """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
 
     `motion` (platform and named points, six components each), `gauges` the readings, `forces` (six an elastic link). `ground` is the

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import NOISE, Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number
 from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import LENGTH, RATIO
@@ -18,7 +18,8 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.freedom import ALL
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.parts.profile import single
+from flexstage.spatial.frame import COMPONENTS, MOTION
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
@@ -36,7 +37,7 @@ class Shares(dict[str, Array]):
         pivot.rz  0.25
         foot.rz   0.01
         """
-        first = {name: float(np.ravel(np.real(share))[0]) for name, share in self.items()}
+        first = {name: single(share) for name, share in self.items()}
         ranked = sorted(first, key=lambda name: -abs(first[name]))
         shown = [name for name in ranked if abs(first[name]) > NOISE * abs(first[ranked[0]])]
         width = max(map(len, shown), default=0)
@@ -61,8 +62,7 @@ class ActuatorLoss:
         return links
 
 
-@dataclass(frozen=True, eq=False)
-class LostMotion(InNotebook):
+class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
     `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I -
@@ -135,7 +135,7 @@ def _least(transfer: Array, kinematics: Kinematics) -> Array:
 
 
 def _stroke_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
-    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
+    units = tuple(map(MOTION.unit, kinematics.coordinates))
     return ratio_units(("m",) * len(kinematics.actuators), units)
 
 

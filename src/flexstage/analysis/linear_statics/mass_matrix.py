@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from flexstage.analysis.linear_statics.statics import statics
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.moving_mass import moving_inertia
@@ -25,8 +25,7 @@ _UNITS = (("kg",) * 3 + ("kg m",) * 3,) * 3 + (("kg m",) * 3 + ("kg m^2",) * 3,)
 _MASSLESS = "the body of this point states no mass"
 
 
-@dataclass(frozen=True, eq=False)
-class MassMatrix(InNotebook):
+class MassMatrix(Result):
     """Mass at a point, with which a twist rate v there has the kinetic energy v^T M v / 2, about the axes of the stage.
 
     `rigid` (..., 6, 6) is the `body` of the point with its payloads, alone. `reduced` (..., 6, 6) is the whole stage as felt there: all

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.record import INNER, Heading, Layout
 from flexstage.base.units.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, SHARE, STIFFNESS
@@ -60,8 +60,7 @@ class DirectionalStiffness:
         return 1.0 / np.einsum("...i,...ij,...j->...", direction, compliance, direction)
 
 
-@dataclass(frozen=True, eq=False)
-class Statics(InNotebook):
+class Statics(Result):
     """Static behaviour of the platform at a point.
 
     `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor
@@ -117,8 +116,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     )
 
 
-@dataclass(frozen=True, eq=False)
-class FreedomStiffness(InNotebook):
+class FreedomStiffness(Result):
     """Stiffness along and about each axis at a point [N/m, N m/rad], strokes held: with the other freedoms free, and with them held.
 
     `motions` are the coordinates of the ideal motions that the stage leaves its platform, `constraints` what its links hold. Free is what

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -15,6 +14,7 @@ from flexstage.analysis.linear_statics.unit_output import UnitOutput
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Vector
 from flexstage.base.record import Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import COMPLIANCE, SHARE, STIFFNESS
 from flexstage.mechanism.assembly.expand import copies, expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -131,7 +131,7 @@ def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, 
     )
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def _omitted(guided: Mechanism, unit: str, output: str, actuator: str) -> Omitted:
     """Most of the work on a unit, kept: designs that differ elsewhere have the same one."""
     return omitted(guided, lever_theory(guided, unit), (output, actuator))

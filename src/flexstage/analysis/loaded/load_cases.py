@@ -9,20 +9,20 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from flexstage.analysis.loaded.course import course
-from flexstage.analysis.loaded.operating_point import coordinate
+from flexstage.analysis.loaded.operating_point import Conditions
 from flexstage.analysis.loaded.stability import give_way
 from flexstage.analysis.loaded.standing import drawn, load_factors
 from flexstage.analysis.workspace.force_workspace import input_limits
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, LowerBoundError, refuse
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import first_design
 from flexstage.base.record import INNER, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, RATIO
 from flexstage.base.units.unit import quantity_of_unit, show
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
+from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.paths.critical_load import (
     Critical,
     NothingGivesWayError,
@@ -96,8 +96,7 @@ class CaseFactor:
     found: Annotated[Critical | None, INNER] = None
 
 
-@dataclass(frozen=True, eq=False)
-class CaseFactors(InNotebook):
+class CaseFactors(Result):
     """Every load case and stroke end of a design, `cases`, and what the least factor of them is asked to be, `demand`."""
 
     cases: tuple[CaseFactor, ...]
@@ -253,9 +252,9 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     >>> round(case_critical(stage, LoadCase("push", "at rest", {"platform.fx": -1e3}, gravity=0.0)).factor, 3)
     11.063
     """
-    known, hold = _brought(model, case)
-    inputs = {channel.name for channel in model.inputs}
-    stays = {**case.stays, **{name: value for name, value in case.at.items() if name in inputs}}
+    point = Conditions(model, case.whole, case.at, case.locked, case.gravity)
+    known, hold = _brought(point)
+    stays = {**case.stays, **point.driven}
     weight, stated = case.shares
     return critical_load(
         model,
@@ -271,22 +270,16 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     )
 
 
-def _brought(model: Nonlinear, case: LoadCase) -> tuple[State | None, dict[str, float]]:
+def _brought(point: Conditions) -> tuple[State | None, dict[str, float]]:
     """The stage where a case has it under all of its load, if it is stable there, and the coordinates that keep it there."""
-    if not case.at and not case.locked:
+    if not point.at and not point.fixed:
         return None, {}
-    rest = equilibrium(model, case.whole, weight=case.gravity)
-    require_equilibrium(rest)
-    inputs = {channel.name for channel in model.inputs}
-    given = {name: value for name, value in case.at.items() if name in inputs}
-    begun = {name: float(coordinate(rest, name)) for name in (*case.at, *case.locked) if name not in inputs}
-    hold = {name: value + case.at.get(name, 0.0) for name, value in begun.items()}
-    there = equilibrium(model, {**case.whole, **given}, hold=hold, weight=case.gravity, start=rest)
+    there, hold = point.reach(1.0), point.held(1.0)
     if not bool(there.converged):
         raise refuse("stage", "no equilibrium was found there", "Ask for less")
-    if not case.at or int(unstable_motions(there, locked=case.locked)):
+    if not point.at or int(unstable_motions(there, locked=point.fixed)):
         return None, hold
-    require_continuation(equilibrium(model, case.whole, hold=begun, weight=case.gravity, start=rest), there)
+    require_continuation(point.reach(0.0), there)
     return there, hold
 
 

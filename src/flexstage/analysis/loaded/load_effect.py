@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -16,6 +16,7 @@ from flexstage.base.finding import DesignError, refuse
 from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import RATIO
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.eigen import eigen
@@ -90,7 +91,7 @@ class LoadEffect:
         )
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     """How a stage changes under its dead load; `None` of a batch of designs and of stages whose load factor is not known.
 

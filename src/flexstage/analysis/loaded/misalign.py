@@ -12,7 +12,7 @@ from flexstage.analysis.loaded.strained import strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, LowerBoundError, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.mechanism.assembly.expand import Assembly, copies, expand
@@ -26,7 +26,7 @@ from flexstage.models.nonlinear.paths.critical_load import NothingGivesWayError,
 from flexstage.models.nonlinear.paths.load_path import continue_along
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import SolverOptions
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _MOST = 0.1
 """The largest misalignment looked at [rad, or over the flexures' length]."""
@@ -34,8 +34,7 @@ _FREQUENCIES = 3
 _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 
 
-@dataclass(frozen=True, eq=False)
-class Misaligned(InNotebook):
+class Misaligned(Result):
     """A stage whose `copy` stands misaligned on the ground along one of its own axes (x, y, z) or about it (rx, ry, rz).
 
     `along` has a row a size of the misalignment: the load that forces the copy there, the first frequencies, the largest stress and strain
@@ -61,8 +60,7 @@ class Misaligned(InNotebook):
         return tuple(strain_warnings(self.strained))
 
 
-@dataclass(frozen=True, eq=False)
-class Misalignments(InNotebook):
+class Misalignments(Result):
     """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where no stiffness vanishes.
 
     `followed` is that up to which the stage is known to be stable, as in `Misaligned`. `load` is what forces the copy to `size` [rad, m],
@@ -123,7 +121,7 @@ def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONE
     """
     rows = seated(mechanism)
     values = [[_forced(mechanism, copy, axis).limits(1.0) for axis in axes] for copy in rows]
-    units = (tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes),) * len(rows)
+    units = (tuple(map(MOTION.unit, axes)),) * len(rows)
     critical, followed = np.moveaxis(np.array(values).reshape(len(rows), len(axes), 2), -1, 0)
     return Matrix(critical, rows, axes, units), Matrix(followed, rows, axes, units)
 
@@ -136,7 +134,7 @@ def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], 
     critical, followed = critical_misalignments(mechanism, axes)
     there = [[_at_size(_forced(mechanism, copy, axis), size) for axis in axes] for copy in critical.rows]
     values = np.array(there).reshape(len(critical.rows), len(axes), 2)
-    units = tuple(WRENCH_UNITS[COMPONENTS.index(axis)] for axis in axes)
+    units = tuple(map(WRENCH.unit, axes))
     load = Matrix(values[..., 0], critical.rows, axes, (units,) * len(critical.rows))
     stress = Matrix(values[..., 1], critical.rows, axes, (("Pa",) * len(axes),) * len(critical.rows))
     return Misalignments(critical, followed, size, load, stress, _worst(mechanism, (critical, followed), stress, size))

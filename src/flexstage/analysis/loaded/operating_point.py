@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -24,7 +24,7 @@ from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_e
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.paths.critical_load import require_continuation, unstable_motions
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _STILL = 1e-12
 """Motion over the flexures' length, and in radians, that counts as none."""
@@ -32,8 +32,7 @@ _SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
 """Where between rest and what is asked an equilibrium is looked for when there is none."""
 
 
-@dataclass(frozen=True, eq=False)
-class OperatingPoint(InNotebook):
+class OperatingPoint(Result):
     """Operating point: `sag` is where its weight, loads and heat bring it from its drawn, unloaded position, `moved` how far from there.
 
     Both have a row a place (the platform and named points), columns displacement and rotation vector; None where it is brought nowhere.
@@ -84,29 +83,27 @@ def operating_point(
     >>> round(float(found.moved.at("platform", "x")) * 1e6, 3), round(float(found.held.at("platform.x", "force")))
     (100.0, 1939)
     """
-    asked = _Asked(nonlinear(mechanism, temperature=temperature), dict(at or {}), dict(loads or {}), tuple(dict.fromkeys(fixed)))
+    asked = Conditions(nonlinear(mechanism, temperature=temperature), loads or {}, at or {}, tuple(dict.fromkeys(fixed)))
     require(_contradictions(asked))
-    rest = equilibrium(asked.model, asked.loads)
-    require_equilibrium(rest)
-    state = asked.reach(rest, 1.0)
+    rest, state = asked.rest, asked.reach(1.0)
     if not bool(state.converged):
-        raise refuse("--at", *_how_far(asked, rest))
+        raise refuse("--at", *_how_far(asked))
     _require_stable(asked, state)
     if asked.at:
-        require_continuation(asked.reach(rest, 0.0), state)
+        require_continuation(asked.reach(0.0), state)
     places = (PLATFORM, *(name for name in wrench_places(asked.model.assembly) if name not in asked.model.bodies))
     units = (TWIST_UNITS,) * len(places)
     sag = np.stack([rest.twist(name) for name in places])
-    linear = linearise(state, locked=asked.hold)
+    linear = linearise(state, locked=asked.fixed)
     return OperatingPoint(
         sag=Matrix(sag, places, COMPONENTS, units),
         moved=Matrix(np.stack([state.twist(name) for name in places]) - sag, places, COMPONENTS, units) if asked.at else None,
         held=_held(asked, state),
-        locked=asked.hold,
+        locked=asked.fixed,
         rest=rest,
         state=state,
         linear=linear,
-        doubts=tuple(_idle(asked, rest, state)),
+        doubts=tuple(_idle(asked, state)),
         provenance=linear.provenance,
     )
 
@@ -117,37 +114,45 @@ def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_consistent(nonlinear(parallelogram()), {"platform.x": 1e-4}, {"platform.fy": 1.0}, [])
     """
-    require(_contradictions(_Asked(model, dict(at), dict(loads), tuple(dict.fromkeys(hold)))))
+    require(_contradictions(Conditions(model, loads, at, tuple(dict.fromkeys(hold)))))
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
-    """What is asked of a model: `at` in coordinates and inputs, `loads`, and what stays locked."""
+class Conditions:
+    """Definition of an operating point: constant `loads`, motions and strokes `at` from rest, `fixed` coordinates, share of weight."""
 
     model: Nonlinear
-    at: dict[str, float]
-    loads: dict[str, float]
-    hold: tuple[str, ...]
+    loads: Mapping[str, float]
+    at: Mapping[str, float]
+    fixed: tuple[str, ...] = ()
+    weight: float = 1.0
 
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return tuple(channel.name for channel in self.model.inputs)
+    @cached_property
+    def rest(self) -> State:
+        """Static equilibrium under the constant loads alone."""
+        found = equilibrium(self.model, self.loads, weight=self.weight)
+        require_equilibrium(found)
+        return found
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """What is held: coordinates that are brought somewhere, and the locked ones."""
-        return tuple(dict.fromkeys([*(name for name in self.at if name not in self.inputs), *self.hold]))
+        """Displaced coordinates, then those that are fixed alone."""
+        return tuple(dict.fromkeys([*(name for name in self.at if name not in self.driven), *self.fixed]))
 
-    @property
+    @cached_property
     def driven(self) -> dict[str, float]:
-        """Inputs that are set beside the loads."""
-        return {name: value for name, value in self.at.items() if name in self.inputs}
+        """Strokes and forces among what is displaced."""
+        inputs = {channel.name for channel in self.model.inputs}
+        return {name: value for name, value in self.at.items() if name in inputs}
 
-    def reach(self, rest: State, share: float | Array) -> State:
-        """The equilibrium a share of the way from rest to what is asked."""
-        held = {name: coordinate(rest, name) + share * self.at.get(name, 0.0) for name in self.coordinates}
+    def held(self, share: float | Array) -> dict[str, Any]:
+        """Displaced and fixed coordinates at a share of the way from rest."""
+        return {name: coordinate(self.rest, name) + share * self.at.get(name, 0.0) for name in self.coordinates}
+
+    def reach(self, share: float | Array) -> State:
+        """Equilibria at shares of the way from rest."""
         given = {name: self.loads.get(name, 0.0) + share * value for name, value in self.driven.items()}
-        return equilibrium(self.model, {**self.loads, **given}, hold=held, start=rest)
+        return equilibrium(self.model, {**self.loads, **given}, hold=self.held(share), weight=self.weight, start=self.rest)
 
 
 def coordinate(state: State, name: str) -> Array:
@@ -163,7 +168,7 @@ def coordinate(state: State, name: str) -> Array:
     return state.twist(owner)[..., COMPONENTS.index(component)]
 
 
-def _contradictions(asked: _Asked) -> Iterator[Finding]:
+def _contradictions(asked: Conditions) -> Iterator[Finding]:
     for name in asked.driven:
         if name in asked.loads:
             yield Finding(name, "it is both a load that stays and what is driven", "Leave out one of the two")
@@ -179,47 +184,47 @@ def _contradictions(asked: _Asked) -> Iterator[Finding]:
             yield Finding(body, f"{bodies.count(body)} of its coordinates are held, and it has six", "Hold fewer")
 
 
-def _owners(asked: _Asked) -> list[str]:
+def _owners(asked: Conditions) -> list[str]:
     return [name.rpartition(".")[0] for name in asked.coordinates]
 
 
-def _how_far(asked: _Asked, rest: State) -> tuple[str, str]:
+def _how_far(asked: Conditions) -> tuple[str, str]:
     """What is said where there is no equilibrium: how far there is one, and what it takes."""
-    tried = asked.reach(rest, _SHARES)
+    tried = asked.reach(_SHARES)
     count = int(np.argmin(np.append(tried.converged, False)))
     if not count:
         return "no equilibrium was found, not even a sixteenth of the way", "Look whether what is held contradicts itself"
     share, most = _SHARES[count - 1], float(np.max(strains(tried).largest[count - 1], initial=0.0))
-    units = [WRENCH_UNITS[COMPONENTS.index(name.rpartition(".")[2])] for name in asked.coordinates]
+    units = [WRENCH.unit(name.rpartition(".")[2]) for name in asked.coordinates]
     force = ", ".join(f"{each:.4g} {unit}" for each, unit in zip(tried.reactions[count - 1], units, strict=True))
     reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in asked.at.items())
     what = f"no equilibrium was found there, but {share:.0%} of the way ({reached}) there is one"
     return f"{what}{f', held by {force}' if force else ''}, its largest strain {most:.2%}", "Ask for no more than that"
 
 
-def _require_stable(asked: _Asked, state: State) -> None:
+def _require_stable(asked: Conditions, state: State) -> None:
     """Refuse a place that the stage leaves once what brought it there is released."""
-    count = int(unstable_motions(state, locked=asked.hold))
+    count = int(unstable_motions(state, locked=asked.fixed))
     if count > 0:
         most = float(np.max(strains(state).largest, initial=0.0))
         ways = f"{count} way{'s' if count > 1 else ''}"
-        loose = [name for name in asked.coordinates if name not in asked.hold]
+        loose = [name for name in asked.coordinates if name not in asked.fixed]
         under = "under the force that brings it there the released stage" if loose else "under its weight and loads, or strokes, the stage"
         what = f"{under} leaves in {ways}; its largest strain is {most:.2%}{_stable_until(asked)}"
         lock = f"Fix it: --fixed {loose[0]}, or ask" if loose else "Ask"
         raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle what gives way")
 
 
-def _stable_until(asked: _Asked) -> str:
+def _stable_until(asked: Conditions) -> str:
     """Up to which sixteenth of what is asked, loads and strokes and places, the stage stays."""
     rest = equilibrium(asked.model, {name: _SHARES * value for name, value in asked.loads.items()})
-    states = asked.reach(equilibrium(asked.model, asked.loads), _SHARES) if asked.at else rest
-    stays = unstable_motions(states, locked=asked.hold) == 0
+    states = asked.reach(_SHARES) if asked.at else rest
+    stays = unstable_motions(states, locked=asked.fixed) == 0
     count = int(np.argmin(np.append(stays, False)))
     return f"; up to {_SHARES[count - 1]:.0%} of the way it stays" if count else ""
 
 
-def _held(asked: _Asked, state: State) -> Matrix | None:
+def _held(asked: Conditions, state: State) -> Matrix | None:
     if not asked.coordinates:
         return None
     places = [COMPONENTS.index(name.rpartition(".")[2]) for name in asked.coordinates]
@@ -228,12 +233,12 @@ def _held(asked: _Asked, state: State) -> Matrix | None:
     return Matrix(np.stack([values, state.reactions], axis=-1), asked.coordinates, ("value", "force"), units)
 
 
-def _idle(asked: _Asked, rest: State, state: State) -> Iterator[Finding]:
+def _idle(asked: Conditions, state: State) -> Iterator[Finding]:
     """Drives and loads that do nothing."""
     for name, value in {**asked.loads, **asked.driven}.items():
         if value == 0.0 and name not in asked.coordinates:
             yield Finding(name, "it is zero, and does nothing", "Give it a size, or leave it out")
-    moved = np.abs(state.pose.position - rest.pose.position) / asked.model.size
-    turned = np.abs(state.pose.turn - rest.pose.turn)
+    moved = np.abs(state.pose.position - asked.rest.pose.position) / asked.model.size
+    turned = np.abs(state.pose.turn - asked.rest.pose.turn)
     if any(asked.driven.values()) and max(np.max(moved), np.max(turned)) < _STILL:
         yield Finding(", ".join(asked.driven), "it moves nothing", "Look what its ends are joined to")

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, first_design
+from flexstage.base.number import Array, first_design, stack
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -82,7 +82,7 @@ def seated(part: Contact, material: Material, wrench: Array) -> Seating:
 
 def _contact_forces(part: Contact, material: Material, contacts: Hertz, wrench: Array) -> tuple[Array, Array]:
     """Normal force (..., c), positive where it presses, and size of the tangential force of each contact."""
-    scale = np.stack(np.broadcast_arrays(*(3 * [1.0]), *(3 * [1.0 / np.real(np.asarray(part.radius))])), axis=-1)
+    scale = stack([*(3 * [1.0]), *(3 * [1.0 / np.real(np.asarray(part.radius))])])
     scaled = scale[..., :, None] * np.real(contact_stiffness(part, material)) * scale[..., None, :]
     moved = scale * (np.linalg.pinv(scaled, rcond=_RANK, hermitian=True) @ (scale * wrench)[..., None])[..., 0]
     forces = (np.real(contacts.matrix) @ (np.real(contacts.motion) @ moved[..., None, :, None]))[..., 0]

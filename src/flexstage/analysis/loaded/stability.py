@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
-from typing import Annotated, ClassVar, TypeAlias, TypeVar, cast
+from functools import cached_property, partial
+from typing import Annotated, Any, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
 import scipy
@@ -20,10 +20,11 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, first_design, stack
 from flexstage.base.record import Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse, below, few
 from flexstage.base.units.quantity import LENGTH, RATIO
 from flexstage.beams.compliance import locked_freedoms as locked_by
-from flexstage.beams.geometric import ENDS, Geometric, geometric
+from flexstage.beams.geometric import Geometric, geometric
 from flexstage.beams.mass import mass
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.assembly.moving_mass import carried_masses
@@ -122,7 +123,7 @@ def _lower(factor: float) -> float:
     return 100.0 * (1.0 - np.sqrt(1.0 - 1.0 / factor))
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
     """Load factors of the whole stage; with `limits`, of the worst strokes between them too. Kept for what asks the same next.
 
@@ -136,21 +137,22 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     True
     """
     require(_unknown_softening(expand(mechanism)))
-    if _pieces(mechanism, model).is_large:
-        return _of_large(mechanism, _pieces(mechanism, model), limits)
-    pieces, dead = _loaded(mechanism, model)
-    unit = [pieces.softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
+    pieces = _pieces(mechanism, model)
+    unit = [pieces.matrix(pieces.geometric(*_stroke(mechanism, pieces, name))) for name in (() if limits is None else limits.actuators)]
+    matrices = (pieces.matrix(pieces.stiffness), pieces.dead, *unit)
     corners = np.zeros((1, 0)) if limits is None else np.real(limits.corners)
-    matrices = (pieces.stiffness, dead, *unit)
-    batch = np.broadcast_shapes(*(each.shape[:-2] for each in (*matrices, corners)))
-    flat = [np.broadcast_to(each, (*batch, *each.shape[-2:])).reshape(-1, *each.shape[-2:]) for each in matrices]
+    batch = np.broadcast_shapes(corners.shape[:-2], *(each.shape[:-2] for each in matrices))
     corners = np.broadcast_to(corners, (*batch, *corners.shape[-2:]))
-    each_corners = corners.reshape(len(flat[0]), *corners.shape[-2:])
-    rows = [_single(flat[0][place], flat[1][place], [each[place] for each in flat[2:]], own) for place, own in enumerate(each_corners)]
-    stepped = any(np.iscomplexobj(each) for each in flat)
-    dead_factors, worst = (np.array(each).reshape(batch) for each in ([row.dead for row in rows], [row.worst for row in rows]))
+    if pieces.is_large:
+        rows = [_load_factors_of_large(*matrices, corners=corners)]
+    else:
+        flat = (np.broadcast_to(each, (*batch, *each.shape[-2:])).reshape(-1, *each.shape[-2:]) for each in matrices)
+        each_corners = corners.reshape(int(np.prod(batch)), *corners.shape[-2:])
+        rows = [_load_factors(*own, corners=ends) for *own, ends in zip(*flat, each_corners, strict=True)]
+    stepped = any(np.iscomplexobj(each) for each in matrices)
+    dead, worst = (np.array([getattr(row, name) for row in rows]).reshape(batch) for name in ("dead", "worst"))
     return Stability(
-        dead=dead_factors if stepped else np.real(dead_factors),
+        dead=dead if stepped else np.real(dead),
         worst=worst if stepped else np.real(worst),
         strokes=np.array([row.strokes for row in rows]).reshape(*batch, corners.shape[-1]),
         stiffens=np.array([row.stiffens for row in rows]).reshape(batch),
@@ -159,15 +161,9 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     )
 
 
-@lru_cache(maxsize=2)
-def _loaded(mechanism: Mechanism, model: LinearModel) -> tuple[_Pieces, Array]:
-    """The stage in pieces, and what its dead load adds to its stiffness: the same with and without strokes."""
-    pieces = _pieces(mechanism, model)
-    return pieces, pieces.softening(*_dead(mechanism, pieces))
-
-
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _pieces(mechanism: Mechanism, model: LinearModel) -> _Pieces:
+    """The stage in pieces: the same with and without strokes."""
     return _Pieces.of(mechanism, model)
 
 
@@ -194,7 +190,7 @@ def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
     """
     require(_unknown_softening(expand(mechanism)))
     pieces = _Pieces.of(mechanism, model)
-    added, own = pieces.softening(*_dead(mechanism, pieces)), pieces.stiffness
+    added, own = (_dense(terms, pieces.size) for terms in (pieces.geometric(*_dead(mechanism, pieces)), pieces.stiffness))
     count = len(model.coordinates)
     across = added[:count, count:]
     inner = np.linalg.solve(own[count:, count:] + added[count:, count:], across.T)
@@ -210,24 +206,27 @@ def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:
 
 _Loads: TypeAlias = Mapping[str, list[tuple[Array, Array]]]
 """Loads by body: pairs of a wrench (..., 6) in the stage's axes and the point (..., 3) it acts at."""
+_Terms: TypeAlias = list[tuple[Sparse, Array]]
+"""A symmetric matrix as a sum of terms R^T law R."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Pieces:
     """The stage in the model's coordinates and the inner bending of its parts: twists of bodies, laws of links."""
 
+    mechanism: Mechanism
     assembly: Assembly
     model: LinearModel
-    twists: Mapping[str, Array]
+    twists: Mapping[str, Sparse]
     parts: Mapping[str, Geometric]
 
     @staticmethod
     def of(mechanism: Mechanism, model: LinearModel) -> _Pieces:
-        assembly = expand(_with_drawn_parts(mechanism))
-        rows = _few_rows if model.is_sparse else _rows
-        twists = {name: rows(model, name, COMPONENTS) for name in assembly.bodies}
+        assembly, size = expand(_with_drawn_parts(mechanism)), len(model.coordinates)
+        twists = {GROUND: Sparse(np.zeros(0, dtype=int), np.zeros((6, 0)), size)}
+        twists |= {name: _rows(model, tuple(f"{name}.{component}" for component in COMPONENTS)) for name in assembly.bodies}
         parts = dict(zip(assembly.links, _by_part(assembly.links.values(), geometric), strict=True))
-        return _Pieces(assembly, model, {GROUND: np.zeros((6, len(model.coordinates))), **twists}, parts)
+        return _Pieces(mechanism, assembly, model, twists, parts)
 
     @cached_property
     def is_large(self) -> bool:
@@ -240,130 +239,75 @@ class _Pieces:
     def size(self) -> int:
         return len(self.model.coordinates) + sum(part.inner.shape[-1] for part in self.parts.values())
 
-    @property
-    def stiffness(self) -> Array:
-        """K (..., n + k, n + k): the model's, and the inner bending of every part beside it."""
-        own = self.model.stiffness_matrix
-        inner = [part.inner for part in self.parts.values()]
-        batch = np.broadcast_shapes(own.shape[:-2], *(each.shape[:-1] for each in inner))
-        result = np.zeros((*batch, self.size, self.size), dtype=np.result_type(own, *inner))
-        count = len(self.model.coordinates)
-        result[..., :count, :count] = own
-        place = count
-        for each in inner:
-            for index in range(each.shape[-1]):
-                result[..., place, place] = each[..., index]
-                place += 1
-        return result
+    def matrix(self, terms: _Terms) -> Any:
+        """The sum of terms, dense (..., n + k, n + k) or, of a large stage, without its zeros."""
+        if self.is_large:
+            return Quadratic.of([rows for rows, _ in terms], [law for _, law in terms], self.size)
+        return _dense(terms, self.size)
 
     @cached_property
-    def shapes(self) -> Mapping[str, tuple[Array, Array]]:
-        """By link, the coordinates that move it, and the motion (..., 12 + k, c) of its ends and of its inner bending in those alone."""
-        found: dict[str, tuple[Array, Array]] = {}
-        place = len(self.model.coordinates)
+    def dead(self) -> Any:
+        """K_g of the dead load."""
+        return self.matrix(self.geometric(*_dead(self.mechanism, self)))
+
+    @property
+    def stiffness(self) -> _Terms:
+        """K: the model's, and the inner bending of every part beside it."""
+        own = [(few(item.operator), item.law) for item in self.model.stiffness.values()]
+        return own + [(self.inner[name], part.inner[..., None] * np.eye(part.inner.shape[-1])) for name, part in self.parts.items()]
+
+    @cached_property
+    def inner(self) -> Mapping[str, Sparse]:
+        """By link, the coordinates of its inner bending."""
+        ends = np.cumsum([len(self.model.coordinates), *(part.inner.shape[-1] for part in self.parts.values())]).tolist()
+        places = zip(self.parts, ends[:-1], ends[1:], strict=True)
+        return {name: Sparse(np.arange(start, end), np.eye(end - start), self.size) for name, start, end in places}
+
+    @cached_property
+    def motions(self) -> Mapping[str, Sparse]:
+        """By link, the motion (..., 12 + k, n + k) of both ends, at its centre, in its frame, and of its inner bending."""
+        return {
+            name: below([*(self._end(body, link) for body in link.joins), self.inner[name]], self.size)
+            for name, link in self.assembly.links.items()
+        }
+
+    def _end(self, body: str, link: PlacedLink) -> Sparse:
+        twist = self.twists[body]
+        return twist if body == GROUND else cast("Sparse", twist_transform(link.frame, self.assembly.bodies[body].reference) @ twist)
+
+    def geometric(self, wrenches: Mapping[str, Array], loads: _Loads) -> _Terms:
+        """K_g of the wrenches (..., 6) of all links, and of the loads on bodies."""
+        forces = {name: [(load[..., :3], point) for load, point in loads.get(name, ())] for name in self.assembly.bodies}
+        terms: _Terms = []
         for name, link in self.assembly.links.items():
-            inner, ends = self.parts[name].inner.shape[-1], self.ends(link)
-            moving = _moving(ends)
-            shape = np.zeros((*ends.shape[:-2], ENDS + inner, len(moving) + inner), dtype=ends.dtype)
-            shape[..., :ENDS, : len(moving)] = ends[..., moving]
-            shape[..., range(ENDS, ENDS + inner), range(len(moving), len(moving) + inner)] = 1.0
-            found[name] = np.concatenate([moving, np.arange(place, place + inner)]), shape
-            place += inner
-        return found
-
-    def ends(self, link: PlacedLink) -> Array:
-        """Twists (..., 12, n) of both ends of a link, at its centre, in its frame."""
-        seen = [self._end(body, link) for body in link.joins]
-        batch = np.broadcast_shapes(*(each.shape[:-2] for each in seen))
-        return np.concatenate([np.broadcast_to(each, (*batch, *each.shape[-2:])) for each in seen], axis=-2)
-
-    def _end(self, body: str, link: PlacedLink) -> Array:
-        return (
-            self.twists[body] if body == GROUND else twist_transform(link.frame, self.assembly.bodies[body].reference) @ self.twists[body]
-        )
-
-    def softening(self, wrenches: Mapping[str, Array], loads: _Loads) -> Array:
-        """K_g (..., n + k, n + k) of the wrenches (..., 6) of all links, and of the loads on bodies."""
-        forces: dict[str, list[tuple[Array, Array]]] = {name: [] for name in self.assembly.bodies}
-        for name, acting in loads.items():
-            forces[name] += [(load[..., :3], point) for load, point in acting]
-        pieces: list[tuple[Array, Array]] = []
-        for name, link in self.assembly.links.items():
-            part, wrench, (moving, shape) = self.parts[name], wrenches[name], self.shapes[name]
-            law = np.einsum("...i,...iab->...ab", wrench, part.per_force)
-            pieces.append((moving, _transposed(shape) @ law @ shape))
+            part, wrench = self.parts[name], wrenches[name]
+            terms.append((self.motions[name], np.einsum("...i,...iab->...ab", wrench, part.per_force)))
             force = link.frame.direction(wrench[..., :3])
             arm = link.frame.direction(part.half[..., None] * np.eye(3)[0])
             for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
                 if body != GROUND:
                     forces[body].append((sign * force, link.frame.position - sign * arm))
-        pieces += [self._turning(name, acting) for name, acting in forces.items() if acting]
-        return _assembled(pieces, self.size)
-
-    def quadratics(self) -> Quadratic:
-        """K as strains, the inner bending of every part beside those of the model."""
-        size, place = self.size, len(self.model.coordinates)
-        own = [(few(item.operator), item.law) for item in self.model.stiffness.values()]
-        parts = [(Sparse(rows.columns, rows.values, size), law) for rows, law in own]
-        for part in self.parts.values():
-            inner = len(part.inner)
-            parts.append((Sparse(np.arange(place, place + inner), np.eye(inner), size), np.diag(part.inner)))
-            place += inner
-        return Quadratic.of([rows for rows, _ in parts], [law for _, law in parts], size)
-
-    def large_softening(self, wrenches: Mapping[str, Array], loads: _Loads) -> Quadratic:
-        """K_g of one design as `softening` has it, without its zeros."""
-        forces: dict[str, list[tuple[Array, Array]]] = {
-            name: [(load[:3], at) for load, at in loads.get(name, ())] for name in self.assembly.bodies
-        }
-        twists = {name: few(twist) for name, twist in self.twists.items()}
-        parts: list[tuple[Sparse, Array]] = []
-        place = len(self.model.coordinates)
-        for name, link in self.assembly.links.items():
-            part, wrench = self.parts[name], wrenches[name]
-            inner = np.arange(place, place + part.inner.shape[-1])
-            place += len(inner)
-            ends = [_carried(self.assembly, link, body, twists[body], self.size) for body in link.joins]
-            law = np.einsum("i,iab->ab", wrench, part.per_force)
-            if law.any():
-                parts.append((below([*ends, Sparse(inner, np.eye(len(inner)), self.size)], self.size), law))
-            force = link.frame.direction(wrench[:3])
-            arm = link.frame.direction(part.half * np.eye(3)[0])
-            for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
-                if body != GROUND:
-                    forces[body].append((sign * force, link.frame.position - sign * arm))
-        for name, acting in forces.items():
-            if acting:
-                turns = twists[name][..., slice(3, 6), :]
-                parts.append((Sparse(turns.columns, turns.values, self.size), _turning_law(self.assembly.bodies[name].reference, acting)))
-        return Quadratic.of([rows for rows, _ in parts], [law for _, law in parts], self.size)
-
-    def _turning(self, name: str, acting: list[tuple[Array, Array]]) -> tuple[Array, Array]:
-        turns = self.twists[name][..., 3:, :]
-        moving = _moving(turns)
-        turns = turns[..., moving]
-        return moving, _transposed(turns) @ _turning_law(self.assembly.bodies[name].reference, acting) @ turns
+        turned = {name: _turning_law(self.assembly.bodies[name].reference, acting) for name, acting in forces.items() if acting}
+        return terms + [(self.twists[name][..., slice(3, 6), :], law) for name, law in turned.items()]
 
     def moving(self, shapes: Array) -> tuple[str, ...]:
         """Bodies that move most in the shapes (n + k, s) of one load factor, by what their reference points move in all of them."""
-        own = shapes[: len(self.model.coordinates)]
-        first = {name: np.real(first_design(twist, 2)) @ own for name, twist in self.twists.items() if name != GROUND}
-        sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items()}
+        first = {name: np.real(first_design(twist.values, 2)) @ shapes[twist.columns] for name, twist in self.twists.items()}
+        sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items() if name != GROUND}
         largest = max(sizes.values(), default=0.0)
         return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:_NAMED]
 
 
-def _moving(shape: Array) -> Array:
-    """The coordinates (c,) whose columns of a shape (..., r, n) are not nought."""
-    return np.flatnonzero(np.any(shape != 0.0, axis=tuple(range(shape.ndim - 1))))
-
-
-def _assembled(pieces: Sequence[tuple[Array, Array]], size: int) -> Array:
-    """The sum (..., n, n) of matrices (..., c, c), each of some coordinates (c,)."""
-    smalls = [small for _, small in pieces]
-    batch = np.broadcast_shapes(*(each.shape[:-2] for each in smalls))
-    result = np.zeros((*batch, size, size), dtype=np.result_type(float, *smalls))
-    for places, small in pieces:
+def _dense(terms: _Terms, size: int) -> Array:
+    """The sum (..., n, n) of terms."""
+    smalls: list[tuple[Array, Array]] = []
+    for rows, law in terms:
+        places, own = np.unique(rows.columns, return_inverse=True)
+        motion = rows.values @ np.eye(len(places))[own]
+        smalls.append((places, _transposed(motion) @ law @ motion))
+    batch = np.broadcast_shapes(*(small.shape[:-2] for _, small in smalls))
+    result = np.zeros((*batch, size, size), dtype=np.result_type(float, *(small for _, small in smalls)))
+    for places, small in smalls:
         result[..., places[:, None], places] += small
     return result
 
@@ -372,12 +316,6 @@ def _turning_law(reference: Array, acting: list[tuple[Array, Array]]) -> Array:
     """What forces at points of a rigid body resist of its rotation (..., 3, 3)."""
     moment = sum((force[..., :, None] * (point - reference)[..., None, :] for force, point in acting), np.zeros((3, 3)))
     return np.trace(moment, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - 0.5 * (moment + _transposed(moment))
-
-
-def _carried(assembly: Assembly, link: PlacedLink, body: str, twist: Sparse, size: int) -> Sparse:
-    """The twist (6, n + k) of a body at a link's centre, in its frame."""
-    values = twist.values if body == GROUND else twist_transform(link.frame, assembly.bodies[body].reference) @ twist.values
-    return Sparse(twist.columns, values, size)
 
 
 def _with_drawn_parts(mechanism: Mechanism) -> Mechanism:
@@ -393,8 +331,7 @@ def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loa
     model = pieces.model
     loads = _weights(mechanism)
     total = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
-    motion = displacement(model, total[..., None])
-    seen = _seen_forces(pieces, motion)
+    seen = _spring_forces(pieces, displacement(model, total[..., None]))
     sprung = {name: seen[name] - _pushed(link) for name, link in pieces.assembly.links.items()}
     return _whole(mechanism, sprung, loads), loads
 
@@ -407,22 +344,16 @@ def _pushed(link: PlacedLink) -> Array:
 
 def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[str, Array], _Loads]:
     """Wrenches of the links per metre of a stroke."""
-    model = pieces.model
-    column = model.input_index((actuator,))
-    motion = input_motion(model, column)
-    return _whole(mechanism, _seen_forces(pieces, motion, column), {}), {}
+    column = pieces.model.input_index((actuator,))
+    return _whole(mechanism, _spring_forces(pieces, input_motion(pieces.model, column), column), {}), {}
 
 
-def _seen_forces(pieces: _Pieces, motion: Array, column: list[int] | None = None) -> dict[str, Array]:
-    """What the springs of every link feel (..., 6) of a motion (..., n, 1) and of a unit of the input in that column."""
-    model = pieces.model
-    places = {name: model.output_index(tuple(f"{name}.{force}" for force in FORCES)) for name in pieces.assembly.links}
-    outputs = model.output @ motion if model.is_sparse else None
-    found: dict[str, Array] = {}
-    for name, rows in places.items():
-        seen = model.output[..., rows, :] @ motion if outputs is None else outputs[rows]
-        found[name] = (seen if column is None else seen + model.feedthrough[..., rows, :][..., column])[..., 0]
-    return found
+def _spring_forces(pieces: _Pieces, motion: Array, column: Sequence[int] = ()) -> dict[str, Array]:
+    """Forces (..., 6) in the springs of every link due to a motion (..., n, 1) and to a unit of the input in that column."""
+    model, links = pieces.model, pieces.assembly.links
+    rows = model.output_index(tuple(f"{name}.{force}" for name in links for force in FORCES))
+    seen = (model.seen(rows, motion) + np.sum(model.feedthrough[..., rows, :][..., list(column)], axis=-1, keepdims=True))[..., 0]
+    return dict(zip(links, np.moveaxis(seen.reshape(*seen.shape[:-1], -1, 6), -2, 0), strict=True))
 
 
 def _weights(mechanism: Mechanism) -> _Loads:
@@ -494,8 +425,8 @@ def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dic
 
 
 @dataclass(frozen=True)
-class _Found:
-    """Factors of one design, and the `shapes` (n + k, s) in which it gives way under its dead load: several where the factor repeats."""
+class _LoadFactors:
+    """Factors of one design, and the `shapes` (n + k, s) in which it buckles under its dead load: several where the factor repeats."""
 
     dead: complex
     worst: complex
@@ -504,20 +435,41 @@ class _Found:
     shapes: Array
 
 
-def _single(stiffness: Array, dead: Array, unit: list[Array], corners: Array) -> _Found:
+def _load_factors(stiffness: Array, *parts: Array, corners: Array) -> _LoadFactors:
     """Factors of one design; of stepped numbers, those that belong to the real design's shape."""
     root = scipy.linalg.cholesky(np.real(stiffness), lower=True)
-    normal = np.stack([_normal(root, np.real(each)) for each in (dead, *unit)])
+    normal = [_normal(root, np.real(each)) for each in parts]
     values, shapes = np.linalg.eigh(normal[0])
-    alike = values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
-    shape = _back(root, shapes[:, 0])
-    strokes, steep = _worst(normal, corners) if unit else (corners[0], shapes[:, 0])
-    total = dead + sum((stroke * each for stroke, each in zip(strokes, unit, strict=True)), np.zeros_like(dead))
-    found, least = _factor(stiffness, dead, shape), _factor(stiffness, total, _back(root, steep))
-    return _Found(found, min(found, least, key=np.real), strokes, float(max(values[-1], 0.0)), _back(root, shapes[:, alike]))
+    strokes, steep = _worst(np.linalg.eigh, np.eye(len(root)), normal, corners) if parts[1:] else (corners[0], shapes[:, 0])
+    back = partial(scipy.linalg.solve_triangular, root.T, lower=False)
+    return _assess(stiffness, parts, strokes, back(steep), largest=values[-1], shapes=back(shapes[:, _repeated(values)]))
 
 
-def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
+def _load_factors_of_large(stiffness: Quadratic, *parts: Quadratic, corners: Array) -> _LoadFactors:
+    """Factors of one design of many freedoms: the least eigenvalues of K_g x = mu K x, without dense matrices."""
+    softest = partial(_softest, Solver(stiffness))
+    values, shapes = softest(parts[0])
+    strokes, steep = _worst(softest, stiffness, parts, corners) if parts[1:] else (corners[0], shapes[:, 0])
+    return _assess(stiffness, parts, strokes, steep, largest=-softest(-1.0 * parts[0])[0][0], shapes=shapes[:, _repeated(values)])
+
+
+def _assess(stiffness: Any, parts: Sequence[Any], strokes: Array, steep: Array, *, largest: float, shapes: Array) -> _LoadFactors:
+    """Factors from the largest mu of the dead load, the shapes of its least, and the softest shape at the worst corner."""
+    dead, worst = _factor(stiffness, parts[0], shapes[:, 0]), _factor(stiffness, _combined(parts, strokes), steep)
+    return _LoadFactors(dead, min(dead, worst, key=np.real), strokes, float(max(largest, 0.0)), shapes)
+
+
+def _repeated(values: Array) -> Array:
+    """Which of ascending values equal the first."""
+    return values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
+
+
+def _combined(parts: Sequence[Any], strokes: Array) -> Any:
+    """K_g of the dead load, the first part, and of strokes."""
+    return sum((stroke * each for stroke, each in zip(strokes.tolist(), parts[1:], strict=True)), parts[0])
+
+
+def _worst(softest: Callable[[Any], Any], stiffness: Any, parts: Sequence[Any], corners: Array) -> tuple[Array, Array]:
     """The corner with the least eigenvalue, and its shape.
 
     Eigenvalues in the space of the softest shapes of some corners are bounds from above for all corners; the corner with the least of them
@@ -525,13 +477,12 @@ def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
     """
     weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
     wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
-    space, solved = np.zeros((normal.shape[-1], 0)), dict[int, Array]()
+    space, solved = np.zeros((stiffness.shape[-1], 0)), dict[int, Array]()
     while True:
         for corner in dict.fromkeys(wanted):
-            lowest = [0, min(_KEPT, normal.shape[-1]) - 1]
-            solved[corner] = scipy.linalg.eigh(np.tensordot(weights[corner], normal, axes=1), subset_by_index=lowest)[1]
-            space = np.linalg.qr(np.concatenate([space, solved[corner]], axis=-1))[0][:, : normal.shape[-1]]
-        small = space.T @ normal @ space
+            solved[corner] = softest(_combined(parts, corners[corner]))[1][:, :_KEPT]
+            space = _orthonormal(stiffness, np.concatenate([space, solved[corner]], axis=-1))
+        small = np.array([space.T @ (part @ space) for part in parts])
         bounds = np.linalg.eigvalsh(np.tensordot(weights, small, axes=1))[:, 0]
         least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
         if least in solved:
@@ -539,76 +490,25 @@ def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
         wanted = [least]
 
 
-def _factor(stiffness: Array, softening: Array, shape: Array) -> complex:
+def _orthonormal(stiffness: Any, shapes: Array) -> Array:
+    """What spans the same, with unit energies and none between any two."""
+    shapes = shapes / np.sqrt(np.sum(shapes * (stiffness @ shapes), axis=0))
+    values, turn = np.linalg.eigh(shapes.T @ (stiffness @ shapes))
+    kept = values > _ALIKE
+    return (shapes @ turn)[:, kept] / np.sqrt(values[kept])
+
+
+def _factor(stiffness: Any, softening: Any, shape: Array) -> complex:
     """The factor of a shape: the elastic energy over what the loads take away; infinite where they take nothing."""
-    elastic, taken = shape @ stiffness @ shape, -(shape @ softening @ shape)
+    elastic, taken = shape @ (stiffness @ shape), -(shape @ (softening @ shape))
     return complex(elastic / taken) if np.real(taken) > _NONE * np.real(elastic) else complex(np.inf)
-
-
-def _of_large(mechanism: Mechanism, pieces: _Pieces, limits: StrokeLimits | None) -> Stability:
-    """Load factors of one design of many freedoms: the least eigenvalues of K_g x = mu K x, without dense matrices."""
-    solver = Solver(pieces.quadratics())
-    dead = pieces.large_softening(*_dead(mechanism, pieces))
-    unit = [pieces.large_softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
-    corners = np.zeros((1, 0)) if limits is None else np.real(first_design(limits.corners, 2))
-    values, shapes = _softest(solver, dead)
-    alike = values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
-    strokes, steep = _worst_of_large(solver, [dead, *unit], corners) if unit else (corners[0], shapes[:, 0])
-    factors = [_large_factor(solver, each, shape) for each, shape in ((dead, shapes[:, 0]), (_mixed([dead, *unit], strokes), steep))]
-    stiffest = -_softest(solver, Quadratic(dead.rows, -dead.law))[0][0]
-    return Stability(
-        dead=np.array(factors[0]),
-        worst=np.array(min(factors)),
-        strokes=np.array(strokes),
-        stiffens=np.array(float(max(stiffest, 0.0))),
-        moving=pieces.moving(shapes[:, alike]),
-        provenance=f"linearised buckling of the {pieces.model.provenance}",
-    )
 
 
 def _softest(solver: Solver, softening: Quadratic) -> tuple[Array, Array]:
     """The least mu of K_g x = mu K x and their shapes (n + k, s)."""
     if not softening.matrix.count_nonzero():
-        size = softening.rows.shape[1]
-        return np.zeros(1), solver.solve(np.ones((size, 1)))
+        return np.zeros(1), solver.solve(np.ones((softening.shape[-1], 1)))
     return least_ratios(solver, softening, _SHAPES)
-
-
-def _mixed(parts: list[Quadratic], strokes: Array) -> Quadratic:
-    """K_g of the dead load, the first part, and of strokes."""
-    rows = scipy.sparse.vstack([part.rows for part in parts], format="csr")
-    laws = [part.law * weight for part, weight in zip(parts, (1.0, *strokes), strict=True)]
-    return Quadratic(rows, scipy.sparse.block_diag(laws, format="csr"))
-
-
-def _worst_of_large(solver: Solver, parts: list[Quadratic], corners: Array) -> tuple[Array, Array]:
-    """As `_worst`: the corner with the least mu, and its shape."""
-    weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
-    wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
-    space, solved = np.zeros((parts[0].rows.shape[1], 0)), dict[int, Array]()
-    while True:
-        for corner in dict.fromkeys(wanted):
-            solved[corner] = _softest(solver, _mixed(parts, corners[corner]))[1][:, :_KEPT]
-            space = _orthonormal(solver, np.concatenate([space, solved[corner]], axis=-1))
-        small = np.array([space.T @ (part @ space) for part in parts])
-        bounds = np.array([np.linalg.eigvalsh(np.tensordot(weight, small, axes=1))[0] for weight in weights])
-        least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
-        if least in solved:
-            return corners[least], solved[least][:, 0]
-        wanted = [least]
-
-
-def _orthonormal(solver: Solver, shapes: Array) -> Array:
-    """What spans the same, with unit energies and none between any two."""
-    shapes = shapes / np.sqrt(np.sum(shapes * (solver.stiffness @ shapes), axis=0))
-    values, turn = np.linalg.eigh(shapes.T @ (solver.stiffness @ shapes))
-    kept = values > _ALIKE
-    return (shapes @ turn)[:, kept] / np.sqrt(values[kept])
-
-
-def _large_factor(solver: Solver, softening: Quadratic, shape: Array) -> float:
-    elastic, taken = float(shape @ (solver.stiffness @ shape)), -float(shape @ (softening @ shape))
-    return elastic / taken if taken > _NONE * elastic else float(np.inf)
 
 
 def _normal(root: Array, matrix: Array) -> Array:
@@ -617,17 +517,9 @@ def _normal(root: Array, matrix: Array) -> Array:
     return 0.5 * (whole + whole.T)
 
 
-def _back(root: Array, shape: Array) -> Array:
-    return scipy.linalg.solve_triangular(root.T, shape, lower=False)
-
-
-def _rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:
-    return model.output[..., model.output_index(tuple(f"{owner}.{name}" for name in names)), :]
-
-
-def _few_rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:
-    first = model.output_index((f"{owner}.{names[0]}",))[0]
-    return cast("Array", cast("Rows", model.output).few(first, len(names)))
+def _rows(model: LinearModel, names: tuple[str, ...]) -> Sparse:
+    index = model.output_index(names)
+    return cast("Rows", model.output).few(index[0], len(index)) if model.is_sparse else few(model.output[..., index, :])
 
 
 def _transposed(matrix: Array) -> Array:

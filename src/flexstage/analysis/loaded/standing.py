@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from flexstage.analysis.loaded.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.finding import DesignError, require
+from flexstage.base.session import SESSION
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
@@ -38,7 +37,7 @@ def under_load(mechanism: Mechanism) -> Stability | None:
     return _under_load(mechanism)[1]
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def drawn(mechanism: Mechanism) -> LinearModel:
     """The lumped model, whether the drawn position stands or not, kept for what else one command asks of the same description.
 
@@ -49,7 +48,7 @@ def drawn(mechanism: Mechanism) -> LinearModel:
     return lumped(mechanism)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def kinematics(mechanism: Mechanism) -> Kinematics:
     """The ideal kinematics, kept in the same way.
 
@@ -60,7 +59,7 @@ def kinematics(mechanism: Mechanism) -> Kinematics:
     return ideal(mechanism)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
     """The lumped model and how it stands, kept for what else one command asks of the same description."""
     model = drawn(mechanism)
@@ -82,7 +81,7 @@ def require_standing(mechanism: Mechanism) -> None:
         require(found.refusals)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def load_factors(mechanism: Mechanism) -> Stability | None:
     """Load factors of the whole stage over all strokes from no voltage; `None` where it has no elastic model.
 

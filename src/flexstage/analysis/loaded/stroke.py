@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Annotated
 
@@ -14,7 +14,7 @@ from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.base.units.quantity import LENGTH
@@ -28,16 +28,13 @@ from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.paths.critical_load import unstable_motions
 from flexstage.models.nonlinear.paths.load_path import LoadPath
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH
 
 _FREQUENCIES = ("f1", "f2", "f3")
-_AT_ONCE = 2
-"""Points between which it is told how far it is."""
 _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 
 
-@dataclass(frozen=True, eq=False)
-class Stroke(InNotebook):
+class Stroke(Result):
     """A stage along `drive`: a row a point `along` it.
 
     Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
@@ -68,15 +65,12 @@ class Beyond:
 
 
 @check_arguments
-def stroke(
-    path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None
-) -> Stroke:
+def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None) -> Stroke:
     """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
 
     Frequencies are NaN where the free stage is not stable. Loads and weight are those of the path. The drive and displacements count from
     `rest`, if it is given. With the stage's ideal `kinematics` the lost motion of a driven stack is told: 1 - R_a V^+ (t - t_rest) / a, of
-    the platform's displacement and rotation vector t and the stroke a, R_a and V those of the drawn position (`lost_motion`). `told` hears
-    how many points are done; without it they are done together.
+    the platform's displacement and rotation vector t and the stroke a, R_a and V those of the drawn position (`lost_motion`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path
@@ -85,20 +79,15 @@ def stroke(
     >>> found.along.columns[:4]
     ('platform.x', 'force', 'stiffness', 'platform.y')
     """
-    count = len(path.values)
-    portions = [np.arange(count)] if told is None else np.array_split(np.arange(count), max(1, -(-count // _AT_ONCE)))
-    found: list[Stroke] = []
-    for portion in portions:
-        found.append(_portion(path if told is None else path.some(portion), rest, kinematics))
-        if told is not None:
-            told(int(portion[-1]) + 1)
-    first, parts = found[0], [each.strained for each in found]
-    largest, curving, stress = (np.concatenate([getattr(each, name) for each in parts]) for name in ("largest", "curving", "stress"))
-    rows, unit = tuple(str(number + 1) for number in range(count)), first.along.unit
-    values = np.concatenate([each.along.values for each in found])
-    along = Matrix(values, rows, first.along.columns, unit if isinstance(unit, str) else unit[:1] * count)
-    strained = replace(parts[0], largest=largest, curving=curving, stress=stress)
-    return replace(first, along=along, strained=strained, doubts=tuple(left_out(path.state)))
+    points = Points(path.drive, path.values, path.state, path.locked, rest, kinematics)
+    points.__dict__["motions"] = path.motions
+    none = _FREQUENCIES[points.frequencies.shape[-1] :]
+    columns = {name: column for name, column in points.columns.items() if name not in none}
+    values = np.stack([values() for values, _ in columns.values()], axis=-1)
+    rows = tuple(str(number + 1) for number in range(len(path.values)))
+    along = Matrix(values, rows, tuple(columns), (tuple(unit for _, unit in columns.values()),) * len(rows))
+    sag = None if rest is None else Matrix(rest.twist(PLATFORM)[None], (PLATFORM,), COMPONENTS, (TWIST_UNITS,))
+    return Stroke(path.drive, along, sag, points.strained, tuple(left_out(path.state)), points.about.provenance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,19 +135,6 @@ class Points:
         return self.columns[name][0]()
 
 
-def _portion(path: LoadPath, rest: State | None, kinematics: Kinematics | None) -> Stroke:
-    points = Points(path.drive, path.values, path.state, path.locked, rest, kinematics)
-    points.__dict__["motions"] = path.motions
-    none = _FREQUENCIES[points.frequencies.shape[-1] :]
-    columns = tuple(name for name in points.columns if name not in none)
-    values = np.stack([points.column(name) for name in columns], axis=-1)
-    rows = tuple(str(number + 1) for number in range(len(path.values)))
-    units = (tuple(points.columns[name][1] for name in columns),) * len(rows)
-    sag = None if rest is None else Matrix(rest.twist(PLATFORM)[None], (PLATFORM,), COMPONENTS, (TWIST_UNITS,))
-    along = Matrix(values, rows, columns, units)
-    return Stroke(path.drive, along, sag, points.strained, (), points.about.provenance)
-
-
 def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], str]]]:
     drive, state, rest = points.drive, points.state, points.rest
     owner, _, component = drive.rpartition(".")
@@ -168,7 +144,7 @@ def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], s
     begun = 0.0 if rest is None or not held else coordinate(rest, drive)
     yield drive, (lambda: points.values - begun, units[component] if held else known.get(drive, "1"))
     if held:
-        force = WRENCH_UNITS[COMPONENTS.index(component)]
+        force = WRENCH.unit(component)
         yield "force", (lambda: state.reactions[..., 0], force)
         conjugate = f"{owner}.{_FORCE_OF[component]}"
         if conjugate in known:

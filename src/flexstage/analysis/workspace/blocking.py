@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number, magnitude, stack
+from flexstage.base.notebook import Result
+from flexstage.base.number import Array, magnitude, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import DISPLACEMENT, FORCE, STIFFNESS
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, WRENCH
 
 
-@dataclass(frozen=True, eq=False)
-class StackLine(InNotebook):
+class StackLine(Result):
     """Each stack driven alone over its full stroke against the stage, (..., n) each.
 
     `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `stage_stiffness` [N/m] the
@@ -40,8 +38,7 @@ class StackLine(InNotebook):
     provenance: str
 
 
-@dataclass(frozen=True, eq=False)
-class PlatformLine(InNotebook):
+class PlatformLine(Result):
     """The platform's force-stroke line along each coordinate, commanded by the ideal mapping, (..., f) each.
 
     `travel` [m, rad] without load (both ways), `stiffness` [N/m, N m/rad] of the platform against a load along this coordinate alone,
@@ -60,15 +57,11 @@ class PlatformLine(InNotebook):
     blocking: Array
     provenance: str
 
-    def against(self, stiffness: Number) -> Array:
-        """Travel (..., f) left when each coordinate works against a spring [N/m, N m/rad] fixed to the ground."""
-        return self.blocking / (self.stiffness + stiffness)
-
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
         """Rows are the coordinates, columns travel, stiffness and blocking."""
-        moves = [TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
-        loads = [WRENCH_UNITS[COMPONENTS.index(name)] for name in self.coordinates]
+        moves = list(map(MOTION.unit, self.coordinates))
+        loads = list(map(WRENCH.unit, self.coordinates))
         slopes = ratio_units(tuple(loads), tuple(moves))
         units = tuple((move, slopes[index][index], load) for index, (move, load) in enumerate(zip(moves, loads, strict=True)))
         values = np.stack([self.travel, self.stiffness, self.blocking], axis=-1)
@@ -91,9 +84,9 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     links = tuple(assembly.strokes.values())
     names = tuple(assembly.strokes)
     strokes = [assembly.actuator(name).free_deformation for name in names]
-    slope = -_joined([_along(model, link, name, free) for (name, link), free in zip(assembly.strokes.items(), strokes, strict=True)])
+    slope = -stack([_along(model, link, name, free) for (name, link), free in zip(assembly.strokes.items(), strokes, strict=True)])
     laws = [model.stiffness[link].law[..., :6, :6] for link in links]
-    own = _joined([np.sum((law @ along[..., None])[..., 0] * along, axis=-1) for law, along in zip(laws, strokes, strict=True)])
+    own = stack([np.sum((law @ along[..., None])[..., 0] * along, axis=-1) for law, along in zip(laws, strokes, strict=True)])
     free = stack([part.stroke for part in stroke_actuators(mechanism).values()])
     against = slope * own / (own - slope)
     return StackLine(
@@ -115,10 +108,6 @@ def _along(model: LinearModel, link: str, name: str, free: Array) -> Array:
     return np.sum(forces * free[..., places], axis=-1)
 
 
-def _joined(values: list[Array]) -> Array:
-    return np.stack(np.broadcast_arrays(*values), axis=-1) if values else np.zeros(0)
-
-
 def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:
     """Force-stroke lines of the platform at its reference point; `mapping` as for `single_axis`.
 
@@ -131,7 +120,7 @@ def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) ->
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> stage = double_triangle()
     >>> line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))
-    >>> bool(np.allclose(line.against(0.0), line.travel))
+    >>> bool(np.allclose(line.blocking, line.travel * line.stiffness))
     True
     """
     twist = tuple(f"{PLATFORM}.{name}" for name in mapping.columns)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, ClassVar
 
@@ -13,8 +12,8 @@ from flexstage.analysis.workspace.load import SAFETY
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number, index_of_largest
+from flexstage.base.notebook import Result
+from flexstage.base.number import Array, Number, index_of_largest, stack
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import RATIO
 from flexstage.beams.compliance import law_of
@@ -38,8 +37,7 @@ class Ends(Enum):
     """One end clamped, the other held by nothing else (a body on a single flexure): effective length 2 L."""
 
 
-@dataclass(frozen=True, eq=False)
-class Buckling(InNotebook):
+class Buckling(Result):
     """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
 
     `ends` says how each column was taken as held. `stage` is how the whole stage gives way: what a column's ends really do, and several
@@ -106,20 +104,16 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     whole = stability(mechanism, model, limits)
     columns = {name: _column(assembly, link) for name, link in assembly.links.items() if _is_column(link)}
     wrenches = corner_wrenches(mechanism, model, limits, tuple(columns))
-    rigidity = _join([column[0] for column in columns.values()])
-    length_ = _join([column[1] for column in columns.values()])
+    rigidity = stack([column[0] for column in columns.values()])
+    length_ = stack([column[1] for column in columns.values()])
     ends = tuple(column[2] for column in columns.values())
-    twisting = _join([_twisting_load(assembly.links[name]) for name in columns])
+    twisting = stack([_twisting_load(assembly.links[name]) for name in columns])
     effective = length_ * np.array([2.0 if end is Ends.FREE else 1.0 for end in ends])
     compression = np.max(-wrenches[..., 0], axis=0)
     largest = np.max(np.abs(wrenches[..., :3]), axis=(0, -2, -1), initial=0.0)
     compression = np.where(np.abs(compression) > _ROUNDING * largest[..., None], compression, 0.0)
     critical = np.broadcast_to(np.minimum(np.pi**2 * rigidity / effective**2, twisting), compression.shape)
     return Buckling(tuple(columns), critical, compression, np.broadcast_to(length_, compression.shape), ends, model.provenance, whole)
-
-
-def _join(values: list[Number]) -> Array:
-    return np.stack(np.broadcast_arrays(*(np.asarray(value) for value in values)), axis=-1) if values else np.zeros(0)
 
 
 def _is_column(link: PlacedLink) -> bool:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, stack
 from flexstage.base.record import INNER, VIEW, Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.mechanism.assembly.expand import expand
@@ -33,8 +33,7 @@ class Intrusion:
     depth: Annotated[Array, LENGTH]
 
 
-@dataclass(frozen=True, eq=False)
-class Clearance(InNotebook):
+class Clearance(Result):
     """What the stage occupies.
 
     `intrusions` into the `opening` (..., 2) [m], none where none is described; `low` and `high` corners (..., 3) [m] of the bounding box;
@@ -95,7 +94,7 @@ class Clearance(InNotebook):
                 yield Finding(f"envelope.{axis}", f"the stage is {shown[0]} wide, the envelope {shown[1]}", f"Look at {ends}")
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def clearance(mechanism: Mechanism) -> Clearance:
     """The bounding box of all outlines against the envelope, and the outlines that enter the opening (a rectangle about the z axis).
 
@@ -131,15 +130,11 @@ def bounds(found: tuple[Outline, ...]) -> tuple[Array, Array, tuple[str, ...]]:
     if not found:
         return np.zeros(3), np.zeros(3), ()
     reached = [outline.reach(_BOTH_WAYS.reshape(6, *(1,) * len(outline.designs), 3)) for outline in found]
-    high = [_join([each[axis] for each in reached]) for axis in range(3)]
-    low = [_join([-each[3 + axis] for each in reached]) for axis in range(3)]
+    high = [stack([each[axis] for each in reached]) for axis in range(3)]
+    low = [stack([-each[3 + axis] for each in reached]) for axis in range(3)]
     ends = [np.argmin(_first(values)) for values in low] + [np.argmax(_first(values)) for values in high]
-    least, most = _join([np.min(values, axis=-1) for values in low]), _join([np.max(values, axis=-1) for values in high])
+    least, most = stack([np.min(values, axis=-1) for values in low]), stack([np.max(values, axis=-1) for values in high])
     return least, most, tuple(found[int(index)].name for index in ends)
-
-
-def _join(values: list[Array]) -> Array:
-    return np.stack(np.broadcast_arrays(*values), axis=-1)
 
 
 def _first(values: Array) -> Array:

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, require
-from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.notebook import Result
+from flexstage.base.number import Array, stack
 from flexstage.base.record import Along, Heading, Layout
 from flexstage.base.units.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
 from flexstage.mechanism.mechanism import Mechanism
 
 
-@dataclass(frozen=True, eq=False)
-class Drive(InNotebook):
+class Drive(Result):
     """The electrical side of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN where not stated).
 
     Linear: the free stroke is proportional to the voltage; hysteresis and creep are left to the loop.
@@ -32,46 +30,13 @@ class Drive(InNotebook):
     bias: Annotated[Array, VOLTAGE, Along("actuators"), Heading(digits=5)]
     capacitance: Annotated[Array, CAPACITANCE, Along("actuators"), Heading(digits=5)]
 
-    def volts(self, strokes: Array) -> Array:
-        """Voltages (..., n) [V] for strokes (..., n) [m] counted from the bias."""
-        return self.bias + strokes / self.gain
-
-    def strokes(self, volts: Array) -> Array:
-        """Strokes (..., n) [m] counted from the bias for voltages (..., n) [V]."""
-        return (volts - self.bias) * self.gain
-
-    def within(self, volts: Array) -> Array:
-        """Whether each voltage (..., n) is in its range; rounding counts as within."""
-        slack = 1e-9 * (self.high - self.low)
-        return (volts >= self.low - slack) & (volts <= self.high + slack)
-
-    def current(self, rate: Array) -> Array:
-        """Charging current i = C da/dt / gain (..., n) [A] at stroke rates (..., n) [m/s].
-
-        Small-signal capacitance; driven over the full range it grows up to twofold. Raises `DesignError` where no capacitance is stated.
-        """
-        self._require_capacitance()
-        return self.capacitance * rate / self.gain
-
-    def sine_current(self, frequency: Number, amplitude: Array) -> Array:
-        """Peak current 2 pi f C a / gain (..., n) [A] of sines of `frequency` [Hz] and stroke amplitude (..., n) [m]."""
-        return self.current(2.0 * np.pi * frequency * amplitude)
-
-    def _require_capacitance(self) -> None:
-        stated = np.atleast_2d(self.capacitance)
-        require(
-            Finding(name, "its stack states no capacitance, and a charging current needs one", 'Add for example capacitance = "0.5 uF"')
-            for index, name in enumerate(self.actuators)
-            if np.any(np.isnan(stated[..., index]))
-        )
-
 
 def drive(mechanism: Mechanism) -> Drive:
     """The electrical side of a stage. Bias absent: the middle of the range. Raises `DesignError` for stacks without a voltage range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> electric = drive(double_triangle())
-    >>> (1e6 * electric.gain).round(3).tolist(), electric.volts(np.zeros(6)).tolist()[0]
+    >>> (1e6 * electric.gain).round(3).tolist(), electric.bias.tolist()[0]
     ([0.15, 0.15, 0.15, 0.2, 0.2, 0.2], 500.0)
     """
     piezos = stacks(mechanism)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, ClassVar
 
@@ -16,8 +15,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number, first_design, magnitude
+from flexstage.base.notebook import Result
+from flexstage.base.number import Array, Number, first_design, magnitude, stack
 from flexstage.base.record import INNER, VIEW, Axes, Heading, Layout
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
@@ -26,8 +25,9 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.actuator import ThrustActuator
+from flexstage.parts.profile import single
 from flexstage.parts.voice_coil import VoiceCoil
-from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, TWIST_UNITS, Frame, twist_transform
+from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, Frame, twist_transform
 
 _ROUNDING, _NONE = 1e-12, 1e-9
 
@@ -36,8 +36,7 @@ _YIELD = "yield stress"
 _LIMIT = 'Add for example peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
 
 
-@dataclass(frozen=True, eq=False)
-class ForceWorkspace(InNotebook):
+class ForceWorkspace(Result):
     """Force workspace: travel of a point along single coordinates, either way, by the elastic model; alone where the inputs allow it.
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate, the other ideal
@@ -129,7 +128,7 @@ def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearM
         *_stops(assembly, model, inputs, per_motion),
         *_stress(mechanism, assembly, model, inputs, per_motion),
     ]
-    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in names)
+    units = tuple(map(MOTION.unit, names))
     bounds = {brief: _bounds(names, [*_by_input(inputs, known, per_motion), *others], units) for brief, known in limits.items()}
     channels = tuple(channel.unit for channel in model.inputs if channel.name in inputs)
     return ForceWorkspace(
@@ -182,7 +181,7 @@ def _sizes(limits: list[list[tuple[str, Number]]]) -> list[float]:
 
     Two on one line then reach their limits together.
     """
-    return [min((float(np.real(np.ravel(value)[0])) for _, value in own), default=1.0) ** 0.5 for own in limits]
+    return [min((single(value) for _, value in own), default=1.0) ** 0.5 for own in limits]
 
 
 def _inverse(gain: Array, sizes: list[float]) -> tuple[Array, tuple[bool, ...]]:
@@ -267,7 +266,7 @@ def _stress(
     load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
     dead = model.seen(model.output_index(names), displacement(model, load[..., None]))[..., 0]
     found = [_yielding(sized, dead, per[..., column]) for column in range(per.shape[-1])]
-    yield _YIELD, np.stack(np.broadcast_arrays(*found), axis=-1)
+    yield _YIELD, stack(list(found))
 
 
 def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array:
@@ -287,7 +286,7 @@ def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array
 
 
 def _bounds(names: tuple[str, ...], causes: _Causes, units: tuple[str, ...]) -> Matrix:
-    values = np.stack(np.broadcast_arrays(*(value for _, value in causes)), axis=-1) if causes else np.zeros((len(names), 0))
+    values = stack([value for _, value in causes]) if causes else np.zeros((len(names), 0))
     return Matrix(values, names, tuple(cause for cause, _ in causes), tuple((unit,) * len(causes) for unit in units))
 
 
@@ -306,7 +305,7 @@ def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], 
         found["rise"].append(resistance * current**2 * np.asarray(thermal)[..., None])
     none = np.zeros((*held.shape[:-2], held.shape[-1], 0))
     return {
-        key: Matrix(np.stack(np.broadcast_arrays(*rows), axis=-1) if rows else none, names, tuple(coils), unit)
+        key: Matrix(stack(list(rows)) if rows else none, names, tuple(coils), unit)
         for (key, rows), unit in zip(found.items(), ("A", "V", "W", "K"), strict=True)
     }
 
@@ -338,7 +337,7 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
             most = np.min(np.stack(np.broadcast_arrays(*(np.asarray(value) for _, value in own))), axis=0)
             low.append(-most)
             high.append(most)
-    return StrokeLimits(inputs, *(np.stack(np.broadcast_arrays(*each), axis=-1) for each in (low, high)))
+    return StrokeLimits(inputs, *(stack(list(each)) for each in (low, high)))
 
 
 def bounds_along(found: ForceWorkspace, name: str) -> Array:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import SHARE, Bound
@@ -25,8 +24,7 @@ _LEVEL = 1e-9
 """Swing per metre of radius over swing on the axis, below which a gauge counts as not feeling its radius."""
 
 
-@dataclass(frozen=True, eq=False)
-class GaugeRange(InNotebook):
+class GaugeRange(Result):
     """Gauge readings at the worst corner of a box of commands, against half the measuring range (gauges set to mid-range), (..., g) each.
 
     `swing` the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
@@ -65,8 +63,7 @@ class GaugeRange(InNotebook):
         return Matrix(values, self.gauges, columns, units)
 
 
-@dataclass(frozen=True, eq=False)
-class PoseResolution(InNotebook):
+class PoseResolution(Result):
     """Platform motion that one resolution step of every gauge amounts to, through S = V (R_s V)^+, (..., 6) [m, rad].
 
     S is by single gauges, through the sums that take them up; `gauge_steps` and `gauge_noise` (..., g) [m, rad] are what each of these
@@ -192,7 +189,7 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
     limit = half_ranges(assembly)
     box = kinematics.motion * half[..., None, :]
     places = [_places(assembly, name, box, limit[..., number]) for number, name in enumerate(assembly.gauges)]
-    columns = [np.stack(np.broadcast_arrays(*values), axis=-1) for values in zip(*places, strict=True)]
+    columns = [stack(list(values)) for values in zip(*places, strict=True)]
     radius, here, anywhere = columns or [np.zeros(0)] * 3
     return GaugeRange(
         gauges=kinematics.gauges,
@@ -287,4 +284,4 @@ def _around(vector: Array, angles: Array) -> Array:
     """A vector (..., 3) turned about z by each angle, (..., angles, 3)."""
     x, y, z = (vector[..., None, index] for index in range(3))
     cosine, sine = np.cos(angles), np.sin(angles)
-    return np.stack(np.broadcast_arrays(x * cosine - y * sine, x * sine + y * cosine, z), axis=-1)
+    return stack([x * cosine - y * sine, x * sine + y * cosine, z])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, Vector, stack
 from flexstage.base.record import Along, Graded, Heading, Layout, Mark
 from flexstage.base.units.quantity import FORCE, SHARE, Bound
@@ -29,8 +28,7 @@ SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
 """Grade of factors against failure: below 1 it happens, below 1.5 little is left."""
 
 
-@dataclass(frozen=True, eq=False)
-class LoadRange(InNotebook):
+class LoadRange(Result):
     """Compression [N] of each stack over the strokes: `min_force`, `max_force`; `usage` of its maximum load, `pull` over what holds it."""
 
     TABLE: ClassVar[Layout] = Layout(
@@ -46,8 +44,7 @@ class LoadRange(InNotebook):
     pull: Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used in tension")]
 
 
-@dataclass(frozen=True, eq=False)
-class LoadShare(InNotebook):
+class LoadShare(Result):
     """Axial forces of the stacks under dead load, positive in compression.
 
     `loads` (actuators x own weight, payloads and forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench;
@@ -124,17 +121,6 @@ class LoadShare(InNotebook):
             else:
                 yield Finding(name, f"{what}, {share[place]:.3g} times what its limits allow", "Preload it, or limit the volts")
 
-    def capacity(self, direction: Array, at: Array) -> Array:
-        """Largest force (...) [N] along a unit direction at a point of the platform that no stack refuses, on top of the dead load."""
-        added = self.under(direction, at)
-        room = np.where(added > 0.0, self.maximum - np.nan_to_num(self.preload) - self.compression, self._pull_room)
-        scale = np.where(np.abs(added) > 1e-12, np.abs(added), np.nan)
-        return np.maximum(0.0, np.nanmin(np.where(np.isnan(room), np.inf, room) / scale, axis=-1))
-
-    @property
-    def _pull_room(self) -> Array:
-        return np.nan_to_num(self.preload) + np.nan_to_num(self.tensile) + self.compression
-
 
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     """Share of weight (bodies, links, payloads) and of the description's forces among the stacks, strokes held.
@@ -156,7 +142,7 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     axial = tuple(f"{link}.fx" for link in assembly.strokes.values())
     require_known(model, axial)
     causes = dead_loads(mechanism, model)
-    motion = displacement(model, np.stack(np.broadcast_arrays(*causes.values()), axis=-1))
+    motion = displacement(model, stack(list(causes.values())))
     loads = -model.seen(model.output_index(axial), motion)
     wrench = static_gain(model, axial, tuple(f"{PLATFORM}.{name}" for name in FORCES)).values
     parts = stroke_actuators(mechanism).values()

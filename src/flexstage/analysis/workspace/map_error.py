@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -11,7 +11,7 @@ from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.stroke import StrokeLimits, beside
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, first_design, index_of_largest
 from flexstage.base.record import INNER, VIEW, Layout
 from flexstage.base.units.quantity import LENGTH
@@ -24,8 +24,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 _ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
-@dataclass(frozen=True, eq=False)
-class MapError(InNotebook):
+class MapError(Result):
     """Error of the linear map, finite pose less J a, at every point tried.
 
     `strokes` (k, ..., n) [m] tried, `errors` (k, ..., 6) [m, rad] there; `worst` (..., 6) the largest by axis, `worst_strokes` (..., 6, n)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Annotated, ClassVar
 
@@ -12,18 +11,17 @@ import scipy
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array
 from flexstage.base.record import VIEW, Layout
 from flexstage.base.units.quantity import RATIO
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import MOTION
 
 _MOST_VERTEX_CANDIDATES = 20_000
 _TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Polytope(InNotebook):
+class Polytope(Result):
     """Reachable poses {xi : `normals` xi <= `offsets`}: normals (..., 2 n, f), offsets (..., 2 n) [m].
 
     `vertices` (..., v, f) [m, rad] (padded with NaN where redundant strokes leave designs with fewer), `volume` (...) in `volume_unit`.
@@ -48,14 +46,14 @@ class Polytope(InNotebook):
     def poses(self) -> Annotated[Matrix, VIEW]:
         """The vertices, of one design."""
         known = self.vertices[~np.isnan(self.vertices).any(axis=-1)]
-        units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in self.coordinates)
+        units = tuple(map(MOTION.unit, self.coordinates))
         return Matrix(known, tuple(str(number + 1) for number in range(len(known))), self.coordinates, (units,) * len(known))
 
     @property
     def extent(self) -> Annotated[Matrix, VIEW]:
         """The least and largest value of each coordinate when the others are free to follow (rows: coordinates)."""
         values = np.stack([np.nanmin(self.vertices, axis=-2), np.nanmax(self.vertices, axis=-2)], axis=-1)
-        units = tuple((TWIST_UNITS[COMPONENTS.index(name)],) * 2 for name in self.coordinates)
+        units = tuple((MOTION.unit(name),) * 2 for name in self.coordinates)
         return Matrix(values, self.coordinates, ("least", "largest"), units)
 
 

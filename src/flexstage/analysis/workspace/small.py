@@ -79,10 +79,15 @@ class SmallMotion:
     closes: tuple[bool, ...]
     span: Array
 
+    def _moved(self, command: Mapping[str, Number]) -> tuple[Array, Array]:
+        """Turn [rad] and bend (L) of every link over a box of commands (half widths)."""
+        half = np.array([float(np.max(np.abs(command.get(name, 0.0)))) for name in self.coordinates])
+        return self.turn @ half, self.bend @ half
+
     def use(self, command: Mapping[str, Number]) -> tuple[float, str]:
         """Share of its bound that the most moved link makes of it over a box of commands (half widths), and its name."""
-        half = np.array([float(np.max(np.abs(command.get(name, 0.0)))) for name in self.coordinates])
-        shares = np.maximum((self.turn @ half) / self.limit, (self.bend @ half) / _SMALL)
+        turned, bent = self._moved(command)
+        shares = np.maximum(turned / self.limit, bent / _SMALL)
         worst = int(np.argmax(shares > (1.0 - 1e-9) * np.max(shares)))
         return float(shares[worst]), self.names[worst]
 
@@ -92,8 +97,7 @@ class SmallMotion:
         A leaf or rod of length L that is bent by u and turned by theta between its ends, u as its middle sees it, is shorter by
         3 u^2 / (5 L) + L theta^2 / 24.
         """
-        half = np.array([float(np.max(np.abs(command.get(name, 0.0)))) for name in self.coordinates])
-        turned, bent = self.turn @ half, self.bend @ half
+        turned, bent = self._moved(command)
         worst = int(np.argmax(np.round(np.maximum(turned, bent), 12)))
         bends = bent[worst] > turned[worst]
         why = f"bends by {bent[worst]:.3g} of its length" if bends else f"turns by {1e3 * turned[worst]:.3g} mrad"
@@ -109,12 +113,11 @@ class SmallMotion:
         if share <= 1.0:
             return ""
         place = self.names.index(name)
-        half = np.array([float(np.max(np.abs(command.get(each, 0.0)))) for each in self.coordinates])
-        turned, bent = 1e3 * float(self.turn[place] @ half), float(self.bend[place] @ half)
-        if turned / (1e3 * self.limit[place]) < bent / _SMALL:
+        turned, bent = (float(each[place]) for each in self._moved(command))
+        if turned / self.limit[place] < bent / _SMALL:
             return f"{name} bends by {bent:.3g} of its length, beyond {_SMALL:.3g} linear models are more than {100.0 * ERROR:g} % off"
         why = "its faces touch" if self.closes[place] else f"linear models are more than {100.0 * ERROR:g} % off"
-        return f"{name} turns by {turned:.4g} mrad, beyond {1e3 * self.limit[place]:.4g} mrad {why}"
+        return f"{name} turns by {1e3 * turned:.4g} mrad, beyond {1e3 * self.limit[place]:.4g} mrad {why}"
 
     def warnings(self, single: SingleAxis) -> Iterator[Finding]:
         """Single-axis strokes that are no small motions, and what is left of them."""

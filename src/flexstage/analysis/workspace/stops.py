@@ -12,7 +12,7 @@ from flexstage.mechanism.assembly.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+from flexstage.spatial.frame import MOTION
 
 STOPS = "stops"
 """What names of stops stand under where limits are told: `stops/end`."""
@@ -55,7 +55,7 @@ def with_stops(
         return mapping, limits
     names = tuple(f"{STOPS}/{name}" for name, kept in zip(stops, met.tolist(), strict=True) if kept)
     low = np.where(np.isinf(low), 2.0 * least - largest, low)
-    units = ratio_units(("m",) * (len(mapping.rows) + len(names)), _units(mapping.columns))
+    units = ratio_units(("m",) * (len(mapping.rows) + len(names)), tuple(map(MOTION.unit, mapping.columns)))
     values = _joined(mapping.values, rows[..., met, :], -2)
     ends = (_joined(strokes, gaps[..., met], -1) for strokes, gaps in ((limits.low, low), (limits.high, high)))
     return Matrix(values, mapping.rows + names, mapping.columns, units), StrokeLimits(limits.actuators + names, *np.broadcast_arrays(*ends))
@@ -69,11 +69,8 @@ def _closing(mechanism: Mechanism, kinematics: Kinematics, columns: tuple[str, .
         see(stop.sight, lambda body, frame: twist_at(assembly, order, body, frame)) @ kinematics.bodies for stop in assembly.stops.values()
     ]
     names = tuple(f"{STOPS}/{name}" for name in assembly.stops)
-    return Matrix(np.concatenate(np.broadcast_arrays(*seen), axis=-2), names, columns, ratio_units(("m",) * len(names), _units(columns)))
-
-
-def _units(columns: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in columns)
+    units = ratio_units(("m",) * len(names), tuple(map(MOTION.unit, columns)))
+    return Matrix(np.concatenate(np.broadcast_arrays(*seen), axis=-2), names, columns, units)
 
 
 def _reached(mapping: Array, rows: Array, limits: StrokeLimits) -> tuple[Array, Array]:

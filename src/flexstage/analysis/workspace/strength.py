@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Annotated, Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -13,8 +13,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, index_of_largest
+from flexstage.base.notebook import Result
+from flexstage.base.number import Array, index_of_largest, stack
 from flexstage.base.record import INNER, VIEW, Heading, Layout
 from flexstage.base.units.quantity import RATIO
 from flexstage.beams.stress import has_section, stress
@@ -23,10 +23,10 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
+from flexstage.parts.profile import single
 
 
-@dataclass(frozen=True, eq=False)
-class HingeStress(InNotebook):
+class HingeStress(Result):
     """Largest stress in every hinge over the corners of the strokes, (..., L) each.
 
     `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN where the material states none); `strokes`
@@ -96,7 +96,7 @@ class HingeStress(InNotebook):
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
         """Rows are the links, columns nominal, peak, yield (where another limit governs, that) and safety."""
-        values = np.stack(np.broadcast_arrays(self.nominal, self.peak, self.allowed, self.safety), axis=-1)
+        values = stack([self.nominal, self.peak, self.allowed, self.safety])
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))
 
 
@@ -120,7 +120,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
     points = limits.points(wrenches.ndim - 3)
     rows = _rows(list(sized.values()), wrenches, points)
-    nominal, peak, known, limit = (np.stack(np.broadcast_arrays(*(row[item] for row in rows)), axis=-1) for item in (0, 1, 2, 4))
+    nominal, peak, known, limit = (stack([row[item] for row in rows]) for item in (0, 1, 2, 4))
     return HingeStress(
         links=tuple(sized),
         actuators=limits.actuators,
@@ -148,13 +148,13 @@ def stress_use(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
 def stress_shares(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
     """Shares of their limits of stress (..., L) that links bear under wrenches (..., L, 6); NaN where a limit is not stated."""
     rows = _rows(list(links.values()), wrenches[None], np.zeros((1, *(1,) * (wrenches.ndim - 2), 0)))
-    return np.stack(np.broadcast_arrays(*(row[1] / row[4] for row in rows)), axis=-1)
+    return stack([row[1] / row[4] for row in rows])
 
 
 def _governing(material: Material | None) -> str:
     """Which limit of stress is the least on the first design; empty where none is stated."""
     limits = {} if material is None else material.limits
-    return min(limits, key=lambda name: float(np.real(np.ravel(limits[name])[0])), default="")
+    return min(limits, key=lambda name: single(limits[name]), default="")
 
 
 def _has_section(link: PlacedLink) -> bool:

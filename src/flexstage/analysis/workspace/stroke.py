@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.record import VIEW, Along, Heading, Layout
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.assembly.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.actuator import ChargedActuator, StrokeActuator
-from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, Frame
+from flexstage.spatial.frame import COMPONENTS, MOTION, Frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +61,7 @@ class StrokeLimits:
         return beside(np.moveaxis(self.corners, -2, 0), depth)
 
 
-@dataclass(frozen=True, eq=False)
-class SingleAxis(InNotebook):
+class SingleAxis(Result):
     """Strokes of the platform along one coordinate at a time, the others held at zero: from `low` to `high` (..., f) [m, rad].
 
     `limiting` names the actuator, or stop (`stops/end`), that ends each stroke (first design, `high` side).
@@ -85,12 +85,11 @@ class SingleAxis(InNotebook):
     def table(self) -> Annotated[Matrix, VIEW]:
         """Rows are the coordinates, columns low, high, symmetric and full."""
         values = np.stack([self.low, self.high, self.symmetric, self.high - self.low], axis=-1)
-        units = tuple((_unit(name),) * 4 for name in self.coordinates)
+        units = tuple((MOTION.unit(name),) * 4 for name in self.coordinates)
         return Matrix(values, self.coordinates, ("low", "high", "symmetric", "full"), units)
 
 
-@dataclass(frozen=True, eq=False)
-class Utilisation(InNotebook):
+class Utilisation(Result):
     """What a box of commands, all coordinates at once, asks of the actuators.
 
     `demand` (..., n) [m] is the largest stroke either way over the box' corners, `available` (..., n) the stroke available both ways. Stops
@@ -153,7 +152,7 @@ def stroke_actuators(mechanism: Mechanism) -> dict[str, StrokeActuator]:
     return {name: part for name, part in parts.items() if isinstance(part, StrokeActuator)}
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
     """Strokes around the bias voltage, or around the middle of the range where none is stated.
 
@@ -245,7 +244,3 @@ def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Num
     demand = (magnitude(mapping.values) @ magnitude(half)[..., None])[..., 0]
     available = np.minimum(-limits.low, limits.high)
     return Utilisation(mapping.rows, dict(command), demand, available, provenance)
-
-
-def _unit(coordinate: str) -> str:
-    return TWIST_UNITS[COMPONENTS.index(coordinate)]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
@@ -22,7 +21,7 @@ from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import Result
 from flexstage.base.number import Number, Table
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import VIEW
@@ -38,8 +37,7 @@ _HINGELESS = "this model knows no single hinges: use the lumped one"
 _FURTHER = frozenset({"worst_case", "polytope", "drive", "map_error", "gauges", "clearance", "platform_lines", "stack_lines", "loads"})
 
 
-@dataclass(frozen=True, eq=False)
-class Workspace(InNotebook):
+class Workspace(Result):
     """The workspace of one design; `None` where model or stage do not give a result, and `reasons` say why, by field name.
 
     `single_axis` are ideal strokes, `corrected` those with lost motion corrected by command. `worst_case` is what the box

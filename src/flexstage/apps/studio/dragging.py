@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
 from flexstage.apps.studio.design.reading import design
+from flexstage.base.session import SESSION
 from flexstage.models.batch.engine import Plan, plan, platform_modes
 
 
@@ -16,6 +15,6 @@ def drag(text: str, file: str, address: str, value: float) -> tuple[float | None
     return tuple(None if np.isnan(each) else float(each) for each in found)
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def _plan(text: str, file: str, address: str) -> Plan:
     return plan(design(text, file), (address,))

@@ -18,8 +18,7 @@ from flexstage.base.processes.threads import one_thread
 _HERE = "flexstage.apps.studio"
 TASKS: Mapping[str, str] = {
     "read": "design.reading:read",
-    "write": "design.writing:written",
-    "follow": "design.reading:follow",
+    "write": "design.writing:write",
     "insert": "design.palette:insert",
     "place": "questions:place",
     "drag": "dragging:drag",

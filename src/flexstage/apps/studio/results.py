@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +29,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, single_axis
-from flexstage.apps.studio.design.reading import design, problems_of
+from flexstage.apps.studio.design.reading import design, finite, problems_of
 from flexstage.apps.studio.protocol import (
     Curve,
     Figure,
@@ -48,6 +48,7 @@ from flexstage.apps.studio.wire import floats
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.model import LinearModel
@@ -80,7 +81,7 @@ class Timer:
         return 1e3 * (time.process_time() - self._start)
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def bench(text: str, file: str) -> Bench:
     """What is known of a design."""
     return bench_of(design(text, file))
@@ -136,7 +137,7 @@ def warnings(text: str, file: str, revision: int) -> Warnings:
     return Warnings(revision, _doubts(text, file))
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def _doubts(text: str, file: str) -> tuple[Problem, ...]:
     from flexstage.analysis.caveats import caveats
 
@@ -154,21 +155,21 @@ def still(text: str, file: str) -> Mapping[str, Any]:
     return _still(text, file).document()
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def _still(text: str, file: str) -> StageData:
     from flexstage.show.viewer.data import still_data
 
     return still_data(design(text, file), text=text)
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def drawn(text: str, file: str) -> StageData:
     """The stage of a design for a viewer."""
     from flexstage.show.viewer.data import stage_data
 
     known = bench(text, file)
-    model, kinematics, felt = (_known(known, each) for each in ("model", "kinematics", "felt"))
-    weighed, found = (None if felt is None else _known(felt, each) for each in ("model", "modes"))
+    model, kinematics, felt = (Attempts().of(each, partial(getattr, known, each)) for each in ("model", "kinematics", "felt"))
+    weighed, found = (None if felt is None else Attempts().of(each, partial(getattr, felt, each)) for each in ("model", "modes"))
     stands = _still(text, file)
     return stage_data(known.mechanism, model=model, weighed=weighed, kinematics=kinematics, found=found, text=text, still=stands)
 
@@ -185,14 +186,7 @@ def _loading(known: Bench) -> str:
     return known.loaded.text if known.felt is not known and known.loaded is not None else ""
 
 
-def _known(known: Bench, name: str) -> Any:
-    try:
-        return getattr(known, name)
-    except DesignError:
-        return None
-
-
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def judged(text: str, file: str) -> tuple[Verdict, ...]:
     """The verdicts on a design. Raises `DesignError` where its text has errors."""
     known = bench(text, file)
@@ -200,14 +194,10 @@ def judged(text: str, file: str) -> tuple[Verdict, ...]:
 
 
 def _stored_verdicts(stored: str, file: str) -> tuple[Verdict, ...]:
-    """The verdicts on the file's design; none where the file has errors."""
-    try:
-        return judged(stored, file)
-    except DesignError:
-        return ()
+    return Attempts().of("verdicts", lambda: judged(stored, file)) or ()
 
 
-@lru_cache(maxsize=8)
+@SESSION.keep(8)
 def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress | None, Buckling | None], dict[str, str]]:
     """Of the workspace what is shown: strokes, stress and buckling, as `workspace` has them; with reasons for what is not there."""
     known, attempt = bench(text, file), Attempts()
@@ -301,7 +291,7 @@ def _with_old(found: Iterable[KeyFigure], kind: str, stored: str, text: str, fil
         yield Figure(each.name, each.name.partition(".")[0], each.unit, shown, 1.0 / form.factor, each.value, stood)
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
     try:
         known = bench(stored, file)
@@ -331,7 +321,7 @@ def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judg
     asked = verdict.requirement
     fitting = display_unit_of(asked.quantity.si, abs(asked.limit))
     form = fitting if preferred_unit(asked.quantity.si).factor != 1.0 else field_unit(asked.quantity)
-    value = _single(verdict.value)
+    value = finite(verdict.value)
     return Judgement(
         asked.key,
         asked.text,
@@ -341,13 +331,9 @@ def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judg
         1.0 / form.factor,
         asked.limit,
         value,
-        _single(old.value),
+        finite(old.value),
         None if value is None else float(verdict.margin),
         bool(verdict.passed),
         verdict.reason,
         line_of(f"requirements.{asked.text}", lines) or line_of(f"requirements.{asked.key}", lines),
     )
-
-
-def _single(value: Array | None) -> float | None:
-    return None if value is None else float(np.real(value))

@@ -6,7 +6,7 @@ import asyncio
 import os
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import replace
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.design.answers import Reading
@@ -32,6 +32,15 @@ _STAGES: tuple[tuple[str, str], ...] = (
 )
 """What is computed of a design, in this order, and what it is called."""
 
+_TASKS: Mapping[type[Any], str] = {
+    say.Part: "card",
+    say.Line: "place",
+    say.Jog: "motion",
+    say.Free: "freedoms",
+    say.Gaps: "clearances",
+    say.Solid: "solid_modes",
+}
+"""Requests that one task answers."""
 _PANES = ("stage", "motions", "reach")
 
 Tell = Callable[[say.Said], None]
@@ -39,10 +48,6 @@ Tell = Callable[[say.Said], None]
 
 class RefusedError(Exception):
     """What a process refused, with its problems."""
-
-    def __init__(self, problems: tuple[say.Problem, ...]) -> None:
-        super().__init__(problems)
-        self.problems = problems
 
 
 class Session:
@@ -67,7 +72,8 @@ class Session:
         self._slow: Helper | None = None
         self._far: Helper | None = None
         self._choice: tuple[Any, ...] = ((), (), None, None)
-        self._drags, self._poses = Newest[say.Drag](self._revision), Newest[say.Pose](self._revision)
+        self._newest: dict[type[Any], Any] = {}
+        """The last request of each kind."""
         self._computed = 0
         self._warnings: tuple[say.Problem, ...] = ()
         self._failures: dict[str, tuple[say.Problem, ...]] = {}
@@ -112,70 +118,57 @@ class Session:
     # --- requests ---
 
     async def answer(self, request: Any, page: int, tell: Tell) -> None:
-        """Do what a page asks, and tell it; refusals too."""
+        """Answer a request of a page, or refuse it, with `tell`; where there is nothing to say, that it is done."""
         try:
-            await self._answers[type(request)](self, request, page, tell)
+            told = await self._answers[type(request)](self, request, page, tell)
         except RefusedError as error:
-            tell(say.Refusal(request.id, error.problems))
+            tell(say.Refusal(request.id, error.args[0]))
         except DesignError as error:
-            tell(say.Refusal(request.id, tuple(map(problem, error.findings))))
+            tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=isinstance(request, say.Edit | say.Save)))
         except Exception as error:  # noqa: BLE001 (one request that fails is no reason to lose the others)
             tell(say.Refusal(request.id, (failure(type(request).__name__.lower(), error),)))
+        else:
+            tell(told or say.Done(request.id, self.history.revision))
 
-    async def _edit(self, request: say.Edit, page: int, tell: Tell) -> None:
-        try:
-            self.history.require_known(request.revision, page)
-        except DesignError as error:
-            tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=True))
-            return
+    async def _edit(self, request: say.Edit, page: int, _: Tell) -> None:
+        """Take the page's text; refused where another page changed it since this one knew it."""
+        self.history.require_known(request.revision, page)
         self._take(self.history.change(request.text.replace("\r\n", "\n"), page))
-        tell(say.Done(request.id, self.history.revision))
 
-    async def _set(self, request: say.Set | say.Rest, page: int, tell: Tell) -> None:
-        """A number of the text: what is asked meanwhile waits, so that no change is lost."""
+    async def _set(self, request: say.Set | say.Rest, page: int, _: Tell) -> None:
+        """Write a number into the text. Where the text was changed meanwhile, nothing is written."""
         value = request.text if isinstance(request, say.Set) else request.value
         async with self._changing:
             text, revision = self.history.text, self.history.revision
             written = await self._asked(self._quick, "write", text, self._file, request.address, value)
             if self.history.revision != revision:
                 raise refuse(request.address, "the text was changed meanwhile", "Set it again")
-            if written.stated and self._quick is not self._model and text == self._design:
-                call = ("follow", written.text, self._file, text, request.address, written.stated)
-                self._start(self._model.do(*call, urgency=Urgency.SOON))
-            self._take(self.history.change(written.text, page))
-        tell(say.Done(request.id, self.history.revision))
+            self._take(self.history.change(written, page))
 
-    async def _insert(self, request: say.Insert, page: int, tell: Tell) -> None:
+    async def _insert(self, request: say.Insert, page: int, _: Tell) -> None:
         async with self._changing:
             written = await self._asked(self._quick, "insert", self.history.text, request.snippet, request.fields)
             self._take(self.history.change(written, page))
-        tell(say.Done(request.id, self.history.revision))
 
-    async def _undo(self, request: say.Undo | say.Redo, page: int, tell: Tell) -> None:
+    async def _undo(self, request: say.Undo | say.Redo, page: int, _: Tell) -> None:
         self._take(self.history.undo(page) if isinstance(request, say.Undo) else self.history.redo(page))
-        tell(say.Done(request.id, self.history.revision))
 
-    async def _save(self, request: say.Save, _: int, tell: Tell) -> None:
-        try:
-            self.stored = self.stored.write(self.history.text, over=request.over)
-        except DesignError as error:
-            tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=True))
-            return
+    async def _save(self, request: say.Save, *_: Any) -> None:
+        self.stored = self.stored.write(self.history.text, over=request.over)
         self._protect()
-        tell(say.Done(request.id, self.history.revision))
-        await self._read()
+        self._start(self._read())
 
-    async def _reload(self, request: say.Reload, page: int, tell: Tell) -> None:
+    async def _reload(self, _: say.Reload, page: int, __: Tell) -> None:
+        """Take the text of the file, which may have changed; the one that was here stays in the history."""
         self.stored = Stored.read(self.stored.path)
         same = self.stored.text == self.history.text
         self._take(self.history.change(self.stored.text, page))
         self._protect()
-        tell(say.Done(request.id, self.history.revision))
         if same:
-            await self._read()
+            self._start(self._read())
 
-    async def _recover(self, request: say.Recover, page: int, tell: Tell) -> None:
-        """Remove a journal once its text is in that of this studio, or if it is discarded."""
+    async def _recover(self, request: say.Recover, page: int, _: Tell) -> None:
+        """Take an unsaved text of a studio that has ended, or discard it; one that is taken is this studio's to protect from then on."""
         draft = self.drafts.get(request.draft)
         if draft is None:
             raise refuse(request.draft, "there is no unsaved text of this name", "Reload the page")
@@ -186,51 +179,47 @@ class Session:
         if not (request.keep and self._unprotected):
             discard(self._journals[request.draft])
         self.drafts = {name: each for name, each in self.drafts.items() if name != request.draft}
-        tell(say.Done(request.id, self.history.revision))
         self._push_state()
 
-    async def _pin(self, request: say.Pin, _: int, tell: Tell) -> None:
+    async def _pin(self, request: say.Pin, *_: Any) -> None:
         if request.keep and request.name not in self.history.pins and len(self.history.pins) >= 12:
             raise refuse(request.name, "twelve designs are pinned already", "Let one go first")
         self.history = self.history.pin(request.name, keep=request.keep)
         self._protect()
-        tell(say.Done(request.id, self.history.revision))
         self._push_state()
 
-    async def _recall(self, request: say.Recall, page: int, tell: Tell) -> None:
+    async def _recall(self, request: say.Recall, page: int, _: Tell) -> None:
         texts = {"": self.stored.text, **self.history.pins}
         if request.name not in texts:
             raise refuse(request.name, "no design is pinned under this name", f"There are {', '.join(self.history.pins) or 'none'}")
         self._take(self.history.change(texts[request.name], page))
-        tell(say.Done(request.id, self.history.revision))
 
-    async def _compare(self, request: say.Compare, _: int, tell: Tell) -> None:
+    async def _compare(self, request: say.Compare, *_: Any) -> say.Said:
+        """Figures of the file, of all pinned designs and of the one that is shown."""
         texts = {"file": self.stored.text, **self.history.pins, "now": self._design}
         tables = [await self._asked(self._model, "compared", text, self._file) for text in texts.values()]
         known = {each.name: each for table in tables for each in table}
         by_name = [{each.name: each.value for each in table} for table in tables]
         rows = tuple(_row(each, by_name[-1].get(name), by_name[0].get(name)) for name, each in known.items())
         values = tuple(tuple(table.get(name) for table in by_name) for name in known)
-        tell(say.Comparison(request.id, tuple(texts), rows, values))
+        return say.Comparison(request.id, tuple(texts), rows, values)
 
-    async def _take_drag(self, request: say.Drag, _: int, tell: Tell) -> None:
-        await self._drags.put(request, tell, self._dragged)
+    async def _drag(self, request: say.Drag, *_: Any) -> say.Said | None:
+        """Frequencies where a slider is; of requests that come faster than they are answered, the newest."""
+        call = ("drag", self._design, self._file, request.address, request.value)
+        outcome = await self._quick.ask(*call, wanted=self._is_newest(request))
+        return outcome and say.Frequencies(request.id, request.address, request.value, outcome.value or (), outcome.problems)
 
-    async def _dragged(self, request: say.Drag) -> say.Said:
-        outcome = await self._quick.ask("drag", self._design, self._file, request.address, request.value)
-        found, problems = (outcome.value or (), outcome.problems) if outcome else ((), ())
-        return say.Frequencies(request.id, request.address, request.value, found, problems)
+    async def _pose(self, request: say.Pose, *_: Any) -> say.Said | None:
+        return await self._asked_while(self._is_newest(request), self._model, "posed", request.id, request.inputs)
 
-    async def _take_pose(self, request: say.Pose, _: int, tell: Tell) -> None:
-        await self._poses.put(request, tell, lambda each: self._question("posed", each.id, each.inputs))
+    async def _ask(self, request: Any, *_: Any) -> say.Said:
+        """What one task answers, of what the request says or of the design as it was computed."""
+        helper = self._quick if isinstance(request, say.Line) else self._model
+        _id, *own = vars(request).values()
+        return await self._asked(helper, _TASKS[type(request)], self._design, self._file, request.id, *(own or [self._computed]))
 
-    async def _part(self, request: say.Part, _: int, tell: Tell) -> None:
-        tell(await self._question("card", request.id, request.link))
-
-    async def _line(self, request: say.Line, _: int, tell: Tell) -> None:
-        tell(await self._question("place", request.id, request.line, helper=self._quick))
-
-    async def _respond(self, request: say.Respond, _: int, tell: Tell) -> None:
+    async def _respond(self, request: say.Respond, *_: Any) -> None:
         """The choice of responses, from now on; refused where the stage has none of that name."""
         choice = (request.inputs, request.outputs, request.low, request.high)
         found = await self._asked(self._model, "figures", self._design, self._file, self.stored.text, self._computed, choice)
@@ -238,75 +227,48 @@ class Session:
             raise refuse("response", found.missing["response"].rstrip("."), "Choose among its inputs and outputs")
         self._choice = choice
         self._push(found)
-        tell(say.Done(request.id, self.history.revision))
 
-    async def _jog(self, request: say.Jog, _: int, tell: Tell) -> None:
-        tell(await self._question("motion", request.id, self._computed))
-
-    async def _derive(self, request: say.Derive, _: int, tell: Tell) -> None:
+    async def _derive(self, request: say.Derive, *_: Any) -> say.Said | None:
         """In a process of its own, as it takes long; nothing of a text that is no more."""
         self._slow = self._slow or Helper(self._died)
         revision = self._computed
-        call = ("slopes", self._design, self._file, request.id, revision)
-        outcome = await self._slow.ask(*call, wanted=lambda: self._computed == revision)
-        if outcome is None:
-            tell(say.Done(request.id, self.history.revision))
-        else:
-            tell(say.Refusal(request.id, outcome.problems) if outcome.problems else outcome.value)
+        return await self._asked_while(lambda: self._computed == revision, self._slow, "slopes", request.id, revision)
 
-    async def _travel(self, request: say.Travel, _: int, tell: Tell) -> None:
+    async def _travel(self, request: say.Travel, _: int, tell: Tell) -> say.Said:
         """In a process of its own, as it takes long, and is ended with it when it is given up; a path that is computed gives way."""
         self._far = self._far or Helper(self._died)
         self._far.start_anew()
-        call = ("travelled", self._design, self._file, self._computed, request)
-        tell(await self._asked(self._far, *call, heard=tell))
+        return await self._asked(self._far, "travelled", self._design, self._file, self._computed, request, heard=tell)
 
-    async def _halt(self, request: say.Halt, _: int, tell: Tell) -> None:
+    async def _halt(self, *_: Any) -> None:
         if self._far is not None:
             self._far.start_anew()
-        tell(say.Done(request.id, self.history.revision))
 
-    async def _free(self, request: say.Free, _: int, tell: Tell) -> None:
-        tell(await self._question("freedoms", request.id, self._computed))
+    async def _palette(self, request: say.Palette, *_: Any) -> say.Said:
+        return say.Snippets(request.id, snippets())
 
-    async def _gaps(self, request: say.Gaps, _: int, tell: Tell) -> None:
-        tell(await self._question("clearances", request.id, self._computed))
-
-    async def _solid(self, request: say.Solid, _: int, tell: Tell) -> None:
-        tell(await self._question("solid_modes", request.id, self._computed))
-
-    async def _palette(self, request: say.Palette, _: int, tell: Tell) -> None:
-        tell(say.Snippets(request.id, snippets()))
-
-    async def _look(self, request: say.Look, page: int, tell: Tell) -> None:
+    async def _look(self, request: say.Look, page: int, _: Tell) -> None:
         self._pages[page] = request.panes
-        tell(say.Done(request.id, self.history.revision))
         if self.sound and "figures" in self._last:
-            await self._compute(self._computed, self.sound)
+            self._start(self._compute(self._computed, self.sound))
 
-    async def _run(self, request: say.Run, _: int, tell: Tell) -> None:
-        tell(say.Done(request.id, self.history.revision, self.jobs.start(request, self.history.text)))
+    async def _run(self, request: say.Run, *_: Any) -> say.Said:
+        return say.Done(request.id, self.history.revision, self.jobs.start(request, self.history.text))
 
-    async def _cancel(self, request: say.Cancel, _: int, tell: Tell) -> None:
+    async def _cancel(self, request: say.Cancel, *_: Any) -> None:
         self.jobs.cancel(request.job)
-        tell(say.Done(request.id, self.history.revision))
 
-    _answers: ClassVar[Mapping[type[Any], Callable[..., Awaitable[None]]]] = {
+    _answers: ClassVar[Mapping[type[Any], Callable[..., Awaitable[say.Said | None]]]] = {
+        **dict.fromkeys(_TASKS, _ask),
         say.Edit: _edit,
         say.Set: _set,
         say.Rest: _set,
-        say.Drag: _take_drag,
-        say.Part: _part,
-        say.Line: _line,
+        say.Drag: _drag,
         say.Respond: _respond,
-        say.Jog: _jog,
-        say.Pose: _take_pose,
+        say.Pose: _pose,
         say.Derive: _derive,
         say.Travel: _travel,
         say.Halt: _halt,
-        say.Free: _free,
-        say.Gaps: _gaps,
-        say.Solid: _solid,
         say.Pin: _pin,
         say.Compare: _compare,
         say.Recall: _recall,
@@ -321,8 +283,6 @@ class Session:
         say.Run: _run,
         say.Cancel: _cancel,
     }
-
-    # --- what follows a change ---
 
     def _take(self, history: History) -> None:
         """Another text: it is read, then computed."""
@@ -432,7 +392,7 @@ class Session:
 
     async def _announced(self, called: str, stage: str, work: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
         """A stage computed; told as it begins where it takes long, and that it is ready after that, a start or an end of the process."""
-        links = len((self.reading.links if self.reading else None) or ())
+        links = len(self.reading.links) if self.reading else 0
         left = expected(stage, links, self._took)
         if left > _QUIET:
             self._push(say.Engine("computes", called, left))
@@ -444,17 +404,14 @@ class Session:
             self._push(say.Engine("ready", "", None))
         return outcome
 
-    def _revision(self) -> int:
-        return self.history.revision
-
     def _push_state(self) -> None:
         reading, history = self.reading or Reading(()), self.history
         self._push(
             say.State(
+                **{name: each for name, each in vars(reading).items() if name != "problems"},
                 revision=history.revision,
                 page=history.page,
                 file=os.fsencode(self.stored.path.name).decode(errors="replace"),
-                name=reading.name,
                 text=history.text,
                 digest=self.stored.digest,
                 saved=history.text == self.stored.text,
@@ -464,14 +421,6 @@ class Session:
                 redo=bool(history.future),
                 problems=self._errors,
                 warnings=self._warnings,
-                amounts=reading.amounts,
-                actuators=reading.actuators,
-                axes=reading.axes,
-                gauges=reading.gauges,
-                inputs=reading.inputs,
-                outputs=reading.outputs,
-                links=dict(reading.links or {}),
-                paths=reading.paths,
                 pins=tuple(history.pins),
                 unprotected=self._unprotected,
                 drafts=tuple(say.Draft(name, each.time, each.digest != self.stored.digest) for name, each in self.drafts.items()),
@@ -514,8 +463,17 @@ class Session:
             raise RefusedError(outcome.problems if outcome else ())
         return outcome.value
 
-    async def _question(self, task: str, to: int, *arguments: Any, helper: Helper | None = None) -> Any:
-        return await self._asked(helper or self._model, task, self._design, self._file, to, *arguments)
+    async def _asked_while(self, wanted: Callable[[], bool], helper: Helper, task: str, *arguments: Any) -> Any:
+        """What a task answers of the design; nothing where that is no longer wanted when its turn comes."""
+        outcome = await helper.ask(task, self._design, self._file, *arguments, wanted=wanted)
+        if outcome is not None and outcome.problems:
+            raise RefusedError(outcome.problems)
+        return outcome and outcome.value
+
+    def _is_newest(self, request: Any) -> Callable[[], bool]:
+        """Whether no other request of this kind came since."""
+        self._newest[type(request)] = request
+        return lambda: self._newest[type(request)] is request
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
         """Work in the background, ended with the session."""
@@ -536,37 +494,6 @@ def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> f
     """
     seconds, size = took.get(stage, (_FIRST[stage], 30))
     return seconds * (links / max(size, 1)) ** 2
-
-
-_Asked = TypeVar("_Asked", say.Drag, say.Pose)
-
-
-class Newest(Generic[_Asked]):
-    """Answers the newest of requests that come faster than they can be answered; older ones are done."""
-
-    def __init__(self, revision: Callable[[], int]) -> None:
-        self._revision = revision
-        self._waiting: tuple[_Asked, Tell] | None = None
-        self._busy = False
-
-    async def put(self, request: _Asked, tell: Tell, answer: Callable[[_Asked], Awaitable[say.Said]]) -> None:
-        """Answer a request as soon as no other one is being answered, unless a newer one comes before."""
-        if self._waiting is not None:
-            older, tell_older = self._waiting
-            tell_older(say.Done(older.id, self._revision()))
-        self._waiting = request, tell
-        if self._busy:
-            return
-        self._busy = True
-        try:
-            while self._waiting is not None:
-                (newest, tell_newest), self._waiting = self._waiting, None
-                try:
-                    tell_newest(await answer(newest))
-                except RefusedError as error:
-                    tell_newest(say.Refusal(newest.id, error.problems))
-        finally:
-            self._busy = False
 
 
 def _row(figure: Any, value: float | None, old: float | None) -> say.Figure:

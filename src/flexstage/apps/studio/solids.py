@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.dynamics.pairing import Moving, Pair, pair_modes
 from flexstage.analysis.dynamics.solid_modes import FeaModes
+from flexstage.apps.studio.design.reading import finite
 from flexstage.apps.studio.protocol import Fact, SolidMode, SolidModes
 from flexstage.apps.studio.results import bench, drawn
 from flexstage.base.finding import DesignError
@@ -48,7 +49,7 @@ def _modes(text: str, file: str, found: FeaModes, pairs: dict[int, Pair]) -> Ite
         yield SolidMode(
             index + 1,
             frequency,
-            None if error is None or not np.isfinite(error) else float(error),
+            finite(error),
             found.modes.names[index],
             None if alike is None else alike.index + 1,
             None if alike is None else alike.frequency,
@@ -63,7 +64,7 @@ def hinge_facts(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
     try:
         known = {name: each for name, each in distinct_hinges(mechanism).items() if link.drawn in each.links}
         jobs = hinge_jobs(turned_forms(known), accuracy_of(_VERIFIED, None))
-        stored = {job.name: find(Cache(), job.key, job.name, HINGES).element for job in jobs}
+        stored = {job.name: find(Cache(), job.key, job.name, HINGES) for job in jobs}
         return tuple(fact for name, each in known.items() for fact in _facts(link, stored[name], each))
     except DesignError:  # a part without a shape, or one whose compliance theory does not give
         return ()

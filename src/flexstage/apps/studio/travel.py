@@ -36,7 +36,8 @@ def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable
         tell(Underway(asked.id, _FOUND + (1.0 - _FOUND) * points / count, f"{points} of {count} points"))
 
     done(0)
-    told = stroke(found, rest, kinematics=ideal(mechanism) if wanted.drive in model.assembly.strokes else None, told=done)
+    told = stroke(found, rest, kinematics=ideal(mechanism) if wanted.drive in model.assembly.strokes else None)
+    done(count)
     shown = stroke_data(mechanism, found, told).document()
     return Travelled(asked.id, revision, shown["motions"], problems_of(told.warnings, text, file))
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.register import origin
+from flexstage.base.session import SESSION
 
 DOCUMENT_ONLY = {"physics": False}
 """Field metadata: the field (a name, tags, sources) does not count in the physics digest."""
@@ -62,7 +63,8 @@ def keep(function: Callable[P, T]) -> Callable[P, T]:
     (4.0, 4.0, 1)
     """
 
-    @functools.lru_cache(maxsize=_MANY)
+    @SESSION.keep(_MANY)
+    @functools.wraps(function)
     def known(*args: P.args, **kwargs: P.kwargs) -> T:
         found = function(*args, **kwargs)
         for each in found if isinstance(found, tuple) else (found,):

@@ -1,1 +1,1 @@
-"""Laws of flexures at large displacements: what bends, twists and stretches in them, as tables of modes along their length."""
+"""Laws of flexures at large displacements: tables of bending, twist and stretch modes along their length."""

@@ -1,7 +1,8 @@
-"""The law of a flexure at large displacements: tables of its modes, its quadratic energy and what little is not quadratic.
+"""Law of a flexure at large displacements: mode tables, quadratic energy and the few non-quadratic terms.
 
-Lengths are over the flexure's own length L, forces over E I / L^2, moments over E I / L, with a reference rigidity E I. The centre line
-goes along x of the link's frame, y is across the thin side, z along the width. Curvatures are (twist, about y, about z).
+Lengths are over the flexure's own length L, forces over E I / L^2, moments over E I / L, with a reference rigidity E I.
+
+The centre line is along x of the link frame, y is across the thin side, z along the width. Curvatures are (twist, about y, about z).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 @dataclass(frozen=True)
 class Resolution(CheckedFields):
-    """How many modes twist, bending about y and about z have, the loads of the plate's two fields, and the points along the flexure."""
+    """Numbers of modes of twist and of bending about y and z, of loads of the two plate fields, and of points along the flexure."""
 
     twist: int = 6
     across: int = 6
@@ -35,20 +36,24 @@ class Resolution(CheckedFields):
 
 DEFAULT = Resolution()
 STRESSES = Resolution(twist=3, across=4, bending=4)
-"""Of hinges whose compliance varies along them: moments of degree 0 and 1 are exact at rest, and two more degrees follow the load."""
+"""Hinges of varying compliance: moments of degree 0 and 1 are exact at zero load; two more degrees follow the load."""
 
 
 @dataclass(frozen=True, eq=False)
 class FlexureLaw:
-    """Tables of a flexure (docs/nonlinear.md, 3); leading axes are flexures of one kind of modes.
+    """Tables of a flexure (docs/nonlinear.md, 3); leading axes are flexures with equal mode counts.
 
-    `form` (..., q, q) is the second derivative of the quadratic energy by all amplitudes: k of curvature, then e of the plate's fields.
-    `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k) are the curvatures of unit amplitudes at the points of the rule and at those
-    of the steps of rotation; `plate` (..., n, 2, e) the fields a2 and a4. `compliance` (..., n, 3) is the stretch and shear by force,
-    `trapeze` (...) I_p / A, `stretch` (..., 2) the stiffness against Gaussian curvature. `length` [m], `rigidity` [N m^2], `inertia`
-    (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m]. `half` (..., 2) are half thickness and width [m].
-    `natural` (..., 2) are the curvatures about z and across the width that bending is counted from, times the length, and `rest` (..., q)
-    the first derivative of the quadratic energy that comes of them, reversed.
+    - `form` (..., q, q): second derivative of the quadratic energy by all amplitudes, k of curvature, then e of the plate fields.
+    - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures of unit amplitudes at the points of the rule and of the rotation
+      steps.
+    - `plate` (..., n, 2, e): the fields a2 and a4.
+    - `compliance` (..., n, 3): stretch and shear per force.
+    - `trapeze` (...): I_p / A; `stretch` (..., 2): the stiffness against Gaussian curvature.
+    - `length` [m], `rigidity` [N m^2].
+    - `inertia` (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m].
+    - `half` (..., 2): half thickness and half width [m].
+    - `natural` (..., 2): natural curvatures about z and across the width, times the length.
+    - `rest` (..., q): the first derivative of the quadratic energy due to the natural curvatures, with opposite sign.
     """
 
     length: Array
@@ -72,15 +77,15 @@ class FlexureLaw:
 
     @property
     def signature(self) -> tuple[int, ...]:
-        """What flexures must share to be computed together: points, modes of curvature, modes of the plate."""
+        """Shape that flexures of one batch share: numbers of points, curvature modes and plate modes."""
         return (*self.modes.shape[-3:], self.plate.shape[-1])
 
 
 def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *, warps: bool = False) -> FlexureLaw:
-    """A leaf with plate action whose ends are clamped (docs/nonlinear.md, 9 to 13); `warps`: the bodies at its ends let it warp.
+    """Build the law of a leaf with plate action and clamped ends (docs/nonlinear.md, 9 to 13); `warps`: the end bodies allow warping.
 
-    Exact for small strains of a thin leaf but for the shapes across its width, which are two: right to 0.04 % in bending up to b^2 k / t of
-    20. Twist at clamped ends has one shape of warping.
+    Exact for small strains of a thin leaf except for two approximations. Two shapes across the width: error 0.04 % in bending up to b^2 k /
+    t = 20. One warping shape for twist at clamped ends.
     """
     length, thickness, width = (np.asarray(each, dtype=float) for each in (part.length, part.thickness, part.width))
     young, poisson = float(material.modulus), float(material.contraction)
@@ -97,9 +102,9 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
     bend = slice(size - resolution.bending, size)
     form[size:, bend], form[bend, size:] = pull, pull.T
     blank, heated = _natural(part, material)
-    rest = blank * form[:, size - resolution.bending]
-    rest[size - resolution.bending] += factor * (1.0 + poisson) * heated
-    rest[size:] += factor * (1.0 + poisson) * heated * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, 0]
+    thermal_gradient = blank * form[:, size - resolution.bending]
+    thermal_gradient[size - resolution.bending] += factor * (1.0 + poisson) * heated
+    thermal_gradient[size:] += factor * (1.0 + poisson) * heated * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, 0]
     modes, inner = _tables([twist, np.eye(resolution.across, rule.size), np.eye(resolution.bending, rule.size)], rule.size)
     ratio = width * width / (thickness * length)
     return FlexureLaw(
@@ -115,23 +120,23 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
         inertia=_spread(_inertia(section, float(material.density)), rule.size),
         half=0.5 * np.stack([thickness, width]),
         natural=np.array([blank + heated, heated]),
-        rest=rest,
+        rest=thermal_gradient,
     )
 
 
 def _natural(part: Leaf, material: Material) -> tuple[float, float]:
-    """Curvatures of a leaf's blank, and of what is warmer at +y and so bends both ways, times its length (docs/nonlinear.md, 30)."""
+    """Natural curvatures times the length: of the blank, and of a warmer face at +y, which bends both ways (docs/nonlinear.md, 30)."""
     blank = 0.0 if part.curvature is None else float(part.curvature)
     if part.face_temperature_difference is None:
         return blank * float(part.length), 0.0
     if material.expansion is None:
-        what = "its expansion is not stated, and a leaf of it is warmer on one side"
-        raise refuse(part.material, what, "State it, or leave out face_temperature_difference")
+        what = "thermal expansion missing (a leaf has a face temperature difference)"
+        raise refuse(part.material, what, "Specify the expansion, or remove face_temperature_difference")
     return blank * float(part.length), -float(material.expansion * part.face_temperature_difference / part.thickness * part.length)
 
 
 def natural_curvature(part: Leaf, material: Material) -> float:
-    """The curvature about z of a free leaf [1/m], of its blank and of its warmer face.
+    """Compute the natural curvature about z of a free leaf [1/m], due to its blank and its warmer face.
 
     >>> natural_curvature(Leaf("steel", 0.1, 0.001, 0.01, curvature=2.0), Material(young=200e9, poisson=0.3, density=7750.0))
     2.0
@@ -140,10 +145,11 @@ def natural_curvature(part: Leaf, material: Material) -> float:
 
 
 def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False, curvature: float = 0.0) -> FlexureLaw:
-    """Any part that is a `Beam`, by modes of stress: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
+    """Build the law of any `Beam` part by stress modes: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
 
-    At rest exactly the 6x6 of the beam. `flat`: a thin section, whose fibres far from the axis stretch when it twists (Wagner). `curvature`
-    is the one about z from which its bending is counted [1/m].
+    At zero load it equals the 6x6 of the beam. `flat`: a thin section, whose fibres far from the axis stretch in twist (Wagner).
+
+    `curvature` is the natural curvature about z [1/m].
     """
     places, weights, flexibility, inertia = _whole(part)
     length = np.sum(weights)
@@ -178,7 +184,7 @@ def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = Fals
 
 
 def _whole(part: Beam) -> tuple[Array, Array, Array, Array]:
-    """Places about the centre, weights, flexibility and inertia at both halves of a beam, of one design."""
+    """Positions about the centre, weights, flexibility and inertia of both halves of a beam, of one design."""
     position, weight = np.ravel(part.points.position), np.ravel(part.points.rate * part.points.rule.weights)
     flexibility, inertia = (np.broadcast_to(each, (len(position), 6)) for each in (part.flexibility, part.inertia))
     weights, flexibility, inertia = (np.concatenate([each[::-1], each]) for each in (weight, flexibility, inertia))
@@ -188,17 +194,17 @@ def _whole(part: Beam) -> tuple[Array, Array, Array, Array]:
 def _leaf_twist(
     resolution: Resolution, section: Section, material: Material, length: Array, rigidity: Array, *, warps: bool
 ) -> tuple[Array, Array]:
-    """Coefficients (k, n) of the modes of twist, and their quadratic form (docs/nonlinear.md, 9)."""
+    """Coefficients (k, n) of the twist modes, and their quadratic form (docs/nonlinear.md, 9)."""
     torsion = float(material.shear) * section.torsion / rigidity
     count, fine = resolution.twist, gauss(FINE)
     if warps:
         return np.eye(count, resolution.points), torsion * _squares(count)
     warping = float(material.modulus) * (0.0 if section.warping is None else section.warping) / (rigidity * length * length)
-    found = orthonormal(held_modes(count, fine.points, 0.5 * np.sqrt(torsion / warping)), fine.weights)
+    modes = orthonormal(held_modes(count, fine.points, 0.5 * np.sqrt(torsion / warping)), fine.weights)
     plate = 1.0 / (1.0 - float(material.contraction) ** 2)
-    curled = curling_energy(float(section.width / length), float(material.contraction), found)
-    form = torsion * _product(found.values, fine.weights) + plate * (warping * _product(found.slopes, fine.weights) - curled)
-    return project(found.values, fine.points, fine.weights, resolution.points), form
+    curled = curling_energy(float(section.width / length), float(material.contraction), modes)
+    form = torsion * _product(modes.values, fine.weights) + plate * (warping * _product(modes.slopes, fine.weights) - curled)
+    return project(modes.values, fine.points, fine.weights, resolution.points), form
 
 
 def _product(values: Array, weights: Array) -> Array:
@@ -206,20 +212,20 @@ def _product(values: Array, weights: Array) -> Array:
 
 
 def _squares(count: int) -> Array:
-    """Integrals of the polynomials' products."""
+    """Integrals of the squared polynomials."""
     return np.diag(1.0 / (2.0 * np.arange(count) + 1.0))
 
 
 def _tables(coefficients: list[Array], size: int) -> tuple[Array, Array]:
-    """Curvatures (n, 3, k) at the points and (3 (n + 1), 3, k) at those of the steps, of modes about x, y and z by their coefficients."""
+    """Curvatures (n, 3, k) at the points and (3 (n + 1), 3, k) at the rotation steps, of modes about x, y and z."""
     rule = gauss(size)
     total, done = sum(len(each) for each in coefficients), 0
-    found = np.zeros((size + len(rule.inner), 3, total))
+    curvatures = np.zeros((size + len(rule.inner), 3, total))
     at = polynomials(size, np.concatenate([rule.points, rule.inner]))
     for axis, each in enumerate(coefficients):
-        found[:, axis, done : done + len(each)] = (each @ at).T
+        curvatures[:, axis, done : done + len(each)] = (each @ at).T
         done += len(each)
-    return found[:size], found[size:]
+    return curvatures[:size], curvatures[size:]
 
 
 def _blocks(*blocks: Array) -> Array:

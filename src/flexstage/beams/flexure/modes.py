@@ -1,4 +1,4 @@
-"""Polynomials along and across a flexure of unit length and width, rules of Gauss, and projections on what these integrate exactly."""
+"""Polynomials along and across a flexure of unit length and width, Gauss rules, and projections that these rules integrate exactly."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from flexstage.base.number import Array
 from flexstage.spatial.rotation import GAUSS_THREE
 
 FINE = 200
-"""Points of the rule by which laws are integrated once."""
+"""Points of the rule that integrates the laws."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rule:
-    """A rule of Gauss on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), integrals of the interpolant to each point.
+    """A Gauss rule on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), integrals of the interpolant to each point.
 
-    `knots` (n + 2,) are 0, the points and 1; `inner` (3 (n + 1),) the three points of Gauss in each interval between them. `ends` (2, n)
-    are the interpolant's values at 0 and 1.
+    `knots` (n + 2,) are 0, the points and 1; `inner` (3 (n + 1),) are three Gauss points in each interval between them.
+
+    `ends` (2, n) are the values of the interpolant at 0 and 1.
     """
 
     points: Array
@@ -32,13 +33,13 @@ class Rule:
 
     @property
     def size(self) -> int:
-        """How many points it has."""
+        """Number of points."""
         return len(self.points)
 
 
 @functools.cache
 def gauss(size: int) -> Rule:
-    """The rule of `size` points.
+    """Return the Gauss rule of `size` points.
 
     >>> rule = gauss(4)
     >>> bool(np.allclose(rule.running @ rule.points**3, rule.points**4 / 4))
@@ -56,7 +57,7 @@ def gauss(size: int) -> Rule:
 
 
 def polynomials(count: int, places: Array) -> Array:
-    """Legendre's polynomials P_k(2 s - 1), k < `count`, at places s (p,): (count, p).
+    """Evaluate Legendre polynomials P_k(2 s - 1), k < `count`, at s (p,): (count, p).
 
     >>> polynomials(2, np.array([0.0, 1.0])).tolist()
     [[1.0, 1.0], [-1.0, 1.0]]
@@ -65,7 +66,7 @@ def polynomials(count: int, places: Array) -> Array:
 
 
 def slopes(count: int, places: Array) -> Array:
-    """Their derivatives by s (count, p).
+    """Evaluate the derivatives by s of the polynomials (count, p).
 
     >>> slopes(2, np.array([0.5])).ravel().tolist()
     [0.0, 2.0]
@@ -87,7 +88,7 @@ class Across:
 
 @functools.cache
 def across(degrees: tuple[int, ...]) -> Across:
-    """Those of the shapes of such `degrees`.
+    """Integrate the shapes of these `degrees` across the width.
 
     >>> across((2,)).curved.round(12).tolist()
     [[1.0]]
@@ -101,9 +102,9 @@ def across(degrees: tuple[int, ...]) -> Across:
 
 
 def project(values: Array, places: Array, weights: Array, size: int) -> Array:
-    """Coefficients (..., size) on P_0 ... P_(size - 1) of functions known at `places` (p,) with `weights`, by least squares.
+    """Project functions known at `places` (p,) with `weights` on P_0 ... P_(size - 1) by least squares: coefficients (..., size).
 
-    What a rule of `size` points integrates of these polynomials times others are then the moments of the functions themselves.
+    Integrals of these polynomials by a rule of `size` points then equal the moments of the functions.
 
     >>> rule = gauss(5)
     >>> project(rule.points**2, rule.points, rule.weights, 3).round(12).tolist()

@@ -1,7 +1,9 @@
-"""The clamped strip: how the section of a leaf curves across its width, in even shapes of Legendre's P2 and P4 with Mindlin's shear.
+"""Clamped strip: curvature of a leaf's section across its width, in even shapes of Legendre's P2 and P4 with Mindlin shear.
 
-Across the width b the deflection is w(x, z) = W - theta z + a2 phi2 + a4 phi4, phi_j = (b^2 / 12) P_j(2 z / b): zero mean, so that neither
-mixes with W'', and phi2'' = 1. Clamped ends forbid amplitudes and the rotations psi of the section in each shape (docs/nonlinear.md, 10).
+Across the width b the deflection is w(x, z) = W - theta z + a2 phi2 + a4 phi4, phi_j = (b^2 / 12) P_j(2 z / b).
+
+The shapes have zero mean, so that they are orthogonal to W'', and phi2'' = 1. Clamped ends constrain the amplitudes and the section
+rotations psi of each shape (docs/nonlinear.md, 10).
 """
 
 from __future__ import annotations
@@ -16,23 +18,24 @@ from flexstage.base.number import Array, Number
 from flexstage.beams.flexure.modes import FINE, across, gauss, polynomials
 
 _DEGREES = (2, 4)
-"""Of the polynomials by which a bent leaf's section curves."""
+"""Degrees of the polynomials across the width of a bent leaf."""
 _TERMS = 30
-"""Polynomials a field along the strip."""
+"""Polynomials per field along the strip."""
 _CUT = 1e-14
-"""Share of the largest singular value below which a combination of fields is rounding."""
+"""Relative singular value below which a combination of fields is rounding."""
 LOADS = (6, 4)
-"""Line loads on a2 and on a4 whose answers are the modes of a leaf's fields."""
+"""Line loads on a2 and on a4 whose responses are the field modes of a leaf."""
 STRETCH_TWO, STRETCH_FOUR = 1.0 / 720.0, 1.0 / 1296.0
 """Integrals of phi2^2 and phi4^2 across the width, over b^5."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """Modes of the fields a2 and a4 of a leaf (docs/nonlinear.md, 11), one amplitude each, lengths over L, energies over D b / L.
+    """Modes of the fields a2 and a4 of a leaf (docs/nonlinear.md, 11), one amplitude each; lengths over L, energies over D b / L.
 
-    `form` (..., e, e) is their quadratic form, `values` (..., 2, e, n) what a2 and a4 are at the points of a rule, and `coupling`
-    (..., 2, e, k) their integrals with P_k, k < n.
+    `form` (..., e, e) is their quadratic form, `values` (..., 2, e, n) are a2 and a4 at the points of a rule.
+
+    `coupling` (..., 2, e, k) are their integrals with P_k, k < n.
     """
 
     form: Array
@@ -56,7 +59,7 @@ def _products() -> tuple[Array, Array, Array]:
 
 
 def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
-    """Quadratic form (120, 120) of a2, a4, psi2, psi4 (docs/nonlinear.md, 10) of a strip of unit length, over D b.
+    """Build the quadratic form (120, 120) of a2, a4, psi2, psi4 (docs/nonlinear.md, 10) of a strip of unit length, over D b.
 
     >>> form = stiffness(0.5, 0.005, 0.3)
     >>> form.shape, bool(np.allclose(form, form.T))
@@ -82,9 +85,9 @@ def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
 
 @functools.lru_cache(maxsize=256)
 def fields(width: float, thickness: Number, poisson: Number, size: int, loads: tuple[int, int] = LOADS) -> Fields:
-    """The modes of a leaf's fields: answers of the strip to line loads P_k on a2 and on a4; `width` and `thickness` over the length.
+    """Compute the field modes of a leaf: responses of the strip to line loads P_k on a2 and a4; `width` and `thickness` over the length.
 
-    Kept for each proportion, so that nobody may write into its arrays.
+    Cached for each proportion: do not modify the arrays.
 
     >>> fields(0.3, 0.003, 0.3, 10).values.shape
     (2, 10, 10)
@@ -101,16 +104,16 @@ def fields(width: float, thickness: Number, poisson: Number, size: int, loads: t
     along = amplitudes @ value
     coupling = along * weights @ moments.T
     projected = coupling * (2.0 * np.arange(size) + 1.0) @ polynomials(size, gauss(size).points)
-    found = Fields(answer.T @ form @ answer, projected, coupling)
-    for each in (found.form, found.values, found.coupling):
+    modes = Fields(answer.T @ form @ answer, projected, coupling)
+    for each in (modes.form, modes.values, modes.coupling):
         each.flags.writeable = False
-    return found
+    return modes
 
 
 def _solve(form: Array, right: Array) -> Array:
-    """Fields that mirror and fields that turn their sign between the ends have nothing to do with one another."""
+    """Solve symmetric and antisymmetric fields separately, as they are decoupled."""
     odd = np.arange(_TERMS) % 2
-    turns = np.concatenate([odd, odd, 1 - odd, 1 - odd]) == 1  # where amplitudes mirror, rotations turn their sign
+    turns = np.concatenate([odd, odd, 1 - odd, 1 - odd]) == 1  # rotations are antisymmetric where amplitudes are symmetric
     result = np.zeros_like(right)
     for part in (np.flatnonzero(turns), np.flatnonzero(~turns)):
         own = form[np.ix_(part, part)]

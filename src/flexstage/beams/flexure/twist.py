@@ -1,4 +1,4 @@
-"""Modes of twist of a flat flexure whose ends cannot warp, and how its section curls across the width where they do."""
+"""Twist modes of a flat flexure with restrained warping, and the curvature of its section across the width."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from flexstage.base.number import Array, Number
 from flexstage.beams.flexure.modes import FINE, across, gauss, polynomials, slopes
 
 _DEGREES = (3, 5, 7)
-"""Of the polynomials by which a twisted leaf's section curls."""
+"""Degrees of the polynomials across the width of a twisted leaf."""
 _TERMS = 26
-"""Polynomials each of them has along the leaf."""
+"""Polynomials per field along the leaf."""
 _PARTS = tuple(np.flatnonzero(np.arange(_TERMS * len(_DEGREES)) % 2 == half) for half in (0, 1))
-"""Of these, fields that mirror and fields that turn their sign between the ends, which have nothing to do with one another."""
+"""Indices of the symmetric and the antisymmetric polynomials, which are decoupled."""
 _CUT = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Functions of s at places: `values` (..., k, p), and their `slopes` by s."""
+    """Functions of s at sampling points: `values` (..., k, p), and their `slopes` by s."""
 
     values: Array
     slopes: Array
 
 
 def held_modes(count: int, places: Array, decay: Array) -> Modes:
-    """Rates of twist (docs/nonlinear.md, 9), zero at ends that cannot warp: P_k - cosh(c u) / cosh(c), sinh for odd k; u = 2 s - 1.
+    """Compute the rates of twist with restrained warping (docs/nonlinear.md, 9): P_k - cosh(c u) / cosh(c), sinh for odd k; u = 2 s - 1.
 
-    `decay` c (...) is half the length times sqrt(G J / (E C_w)). In exponentials that cannot overflow.
+    `decay` c (...) is half the length times sqrt(G J / (E C_w)). The exponentials cannot overflow.
 
     >>> held_modes(2, np.array([0.0, 1.0]), np.array(500.0)).values.round(12).tolist()
     [[0.0, 0.0], [0.0, 0.0]]
@@ -47,13 +47,13 @@ def held_modes(count: int, places: Array, decay: Array) -> Modes:
 
 
 def orthonormal(modes: Modes, weights: Array) -> Modes:
-    """Return the same functions combined to orthonormal ones, the integral by the `weights` (p,) at their places.
+    """Orthonormalise the functions for the integral with `weights` (p,) at their points.
 
-    In short wide leaves those of `held_modes` are nearly dependent: amplitudes of no effect would go with rounding.
+    In short wide leaves the functions of `held_modes` are nearly dependent: amplitudes without effect would amplify rounding.
 
     >>> rule = gauss(20)
-    >>> found = orthonormal(held_modes(3, rule.points, np.array(0.1)), rule.weights)
-    >>> bool(np.allclose(found.values * rule.weights @ found.values.T, np.eye(3)))
+    >>> result = orthonormal(held_modes(3, rule.points, np.array(0.1)), rule.weights)
+    >>> bool(np.allclose(result.values * rule.weights @ result.values.T, np.eye(3)))
     True
     """
     root = np.linalg.qr((modes.values * np.sqrt(weights)).T)[1]
@@ -71,10 +71,10 @@ def _along() -> tuple[Array, Array, Array]:
 
 
 def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
-    """What curling takes (..., k, k) from the form of twist, over D b / L; `width` over the length, `twist` at the fine points.
+    """Compute the reduction (..., k, k) of the twist form by section curvature, over D b / L; `twist` at the fine points.
 
-    With w_xx = - k_x' z and w_xz = - k_x the plate also bends to a_j phi_j, j = 3, 5, 7, a and a' zero at the clamps, and its fields of
-    least energy follow twist (docs/nonlinear.md, 9).
+    `width` is over the length. With w_xx = - k_x' z and w_xz = - k_x the plate also bends to a_j phi_j, j = 3, 5, 7, with a and a' zero at
+    the clamps. The fields of least energy follow the twist (docs/nonlinear.md, 9).
     """
     width_wise, weights = across(_DEGREES), gauss(FINE).weights
     value, slope, _ = _along()
@@ -91,7 +91,7 @@ def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
 
 @functools.cache
 def _products() -> tuple[Array, Array, Array, Array]:
-    """The forms of a_j a_k, a_j' a_k', a_j'' a_k'' and a_j'' a_k, with their integrals across."""
+    """The forms of a_j a_k, a_j' a_k', a_j'' a_k'' and a_j'' a_k, with their integrals across the width."""
     width_wise, weights = across(_DEGREES), gauss(FINE).weights
     value, slope, curve = _along()
     mixed = np.kron(width_wise.mixed, curve * weights @ value.T)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
@@ -15,7 +16,7 @@ from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
 from flexstage.control.plant_models.coordinates import Coordinates
-from flexstage.control.systems.system import System, select, side_by_side
+from flexstage.control.systems.system import System, select
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +58,9 @@ class Decentralised(CheckedFields):
         """
         chains = loop_systems(self, step)
         loops, coordinates, count = self.loops, self.loops.coordinates, len(chains)
-        A = side_by_side([each.A for each in chains])
-        entries = [side_by_side([each.B[:, [column]] for each in chains]) for column in range(3)]
-        exit_ = side_by_side([each.C for each in chains])
+        A = scipy.linalg.block_diag(*(each.A for each in chains))
+        entries = [scipy.linalg.block_diag(*(each.B[:, [column]] for each in chains)) for column in range(3)]
+        exit_ = scipy.linalg.block_diag(*(each.C for each in chains))
         direct = [np.diag([each.D[0, column] for each in chains]) for column in range(3)]
         # what was applied, seen by the loops; the loops' commands are less than the actuators' where these are redundant
         seen = (loops.sense, loops.sense, np.linalg.pinv(loops.drive))

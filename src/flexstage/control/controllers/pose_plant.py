@@ -4,34 +4,24 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
-from flexstage.control.systems.system import System, select
+from flexstage.control.systems.system import System, reachable, select
 
 
-def pose_plant(plant: Plant) -> System:
+def pose_plant(plant: Plant, offset: float = 0.0) -> System:
     """From `command.<actuator>` [m] to `pose.<c>` [m, rad]: stage, amplifiers, gauges, hold and delay; continuous where the loop is.
+
+    All modes of a sampled plant are higher by a relative `offset`: time that runs faster, lags and delays with it.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = pose_plant(integral_loop().plant)
     >>> found.input_names, found.output_names, found.step
     (('command.B',), ('pose.x',), 0.0001)
     """
-    whole = _driven(select(zero_order_hold(plant), plant.actuators, [f"gap.{name}" for name in plant.gauges]))
-    pose = plant.coordinates.pose
-    commands = plant.coordinates.commands("command.")
-    return replace(whole, C=pose @ whole.C, D=pose @ whole.D, inputs=commands, outputs=plant.coordinates.motions("pose."))
-
-
-def _driven(system: System) -> System:
-    """Without states that no input ever moves: of a measured plant those that only the ground does."""
-    moved = np.any(system.B != 0.0, axis=1)
-    for _ in range(len(moved)):
-        further = moved | np.any(system.A[:, moved] != 0.0, axis=1)
-        if np.array_equal(further, moved):
-            break
-        moved = further
-    if np.all(moved):
-        return system
-    return replace(system, A=system.A[np.ix_(moved, moved)], B=system.B[moved], C=system.C[:, moved])
+    given, pose = plant.hardware, plant.coordinates.pose
+    if given.rate is not None:
+        faster = 1.0 + offset
+        plant = replace(plant, hardware=replace(given, rate=given.rate / faster, delay=given.delay * faster))
+    whole = reachable(select(zero_order_hold(plant), plant.actuators, [f"gap.{name}" for name in plant.gauges]))
+    inputs, outputs = plant.coordinates.commands("command."), plant.coordinates.motions("pose.")
+    return replace(whole, C=pose @ whole.C, D=pose @ whole.D, inputs=inputs, outputs=outputs, step=given.step)

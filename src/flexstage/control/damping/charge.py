@@ -11,11 +11,11 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, Along, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY, SHARE
-from flexstage.control.damping.damped_plant import tension_signs
+from flexstage.control.damping.damped_plant import around_legs
 from flexstage.control.damping.legs import Leg, pair_modes
 from flexstage.control.plant_models.electronics import ChargeDrive
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.system import System, connect, rename, select
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel, LinearModel
 
 
@@ -77,18 +77,11 @@ def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, Charge
     constant charge that adds kappa^2 w_0/(s + w_0) F/k. `legs` have the stiffness k at constant volts; of the links' forces, which `given`
     has, it has those `kept`.
     """
-    entries = {each.actuator: f"entry.{each.actuator}" for each in legs}
-    stage = rename(given.system, entries)
-    links: dict[str, dict[str, float]] = {entries[each.actuator]: {each.actuator: 1.0, f"leaked.{each.actuator}": 1.0} for each in legs}
-    for each, sign in zip(legs, tension_signs(given, legs), strict=True):
-        links[f"tension.{each.actuator}"] = {f"{each.link}.fx": sign}
-    passing = {name: {name: 1.0} for name in stage.input_names if name not in entries.values()}
+    inner = [_leak(each, drives[each.actuator]) for each in legs]
     gone = {f"{each.link}.fx" for each in legs} - {f"{name}.fx" for name in kept}
-    outputs = tuple(name for name in given.system.output_names if name not in gone)
-    whole = connect([stage, *(_leak(each, drives[each.actuator]) for each in legs)], links | passing, given.system.inputs, outputs)
     return replace(
         given,
-        system=select(whole, given.system.input_names, outputs),
+        system=around_legs(given, legs, inner, [name for name in given.system.output_names if name not in gone]),
         states=(*given.states, *(f"charge.{each.actuator}" for each in legs)),
         note=f"{given.note}; stacks of {', '.join(each.actuator for each in legs)} at constant charge above their leakage",
     )

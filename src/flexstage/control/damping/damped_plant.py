@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
@@ -15,7 +16,7 @@ from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.damping.force_feedback import ForceFeedback, damping_of_pair, most_damping
 from flexstage.control.damping.legs import Leg, Pairs
 from flexstage.control.plant_models.plants import ADDED, SENSED, Plant
-from flexstage.control.plant_models.reduction import resonances
+from flexstage.control.plant_models.reduction import residualise, resonances
 from flexstage.control.systems.system import System, connect, rename, select
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS, FORCES
@@ -95,46 +96,40 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
     Their strokes are added before the amplifiers, and are outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>` [N] are what the
     sensors hear besides the tension.
     """
-    signs = tension_signs(given, legs)
-    entries = {each.actuator: f"entry.{each.actuator}" for each in legs}
-    stage = rename(given.system, entries)
     inner = [
         law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"{ADDED}.{each.actuator}", "m")) for each in legs
     ]
-    links: dict[str, dict[str, float]] = {entries[each.actuator]: {each.actuator: 1.0, f"{ADDED}.{each.actuator}": 1.0} for each in legs}
-    for each, sign in zip(legs, signs, strict=True):
-        links[f"tension.{each.actuator}"] = {f"{each.sensed}.fx": sign, f"{SENSED}.{each.actuator}": 1.0}
     heard = tuple(Channel(f"{SENSED}.{each.actuator}", "N") for each in legs)
     gone = {f"{each.sensed}.fx" for each in legs}
-    outputs = tuple(name for name in given.system.output_names if name not in gone) + tuple(f"{ADDED}.{each.actuator}" for each in legs)
-    passing = {name: {name: 1.0} for name in stage.input_names if name not in entries.values()}
-    whole = connect([stage, *inner], links | passing, (*given.system.inputs, *heard), outputs)
+    kept = [name for name in given.system.output_names if name not in gone]
     count = len(law.denominator) - 1
     states = (f"damping.{each.actuator}.{number + 1}" for each in legs for number in range(count))
     return replace(
         given,
-        system=select(whole, (*given.system.input_names, *(each.name for each in heard)), outputs),
+        system=around_legs(given, legs, inner, (*kept, *(f"{ADDED}.{each.actuator}" for each in legs)), heard),
         states=(*given.states, *states),
         note=f"{given.note}; force feedback in the legs of {', '.join(each.actuator for each in legs)}",
         heard=Table({f"{SENSED}.{each.actuator}": each.noise for each in legs if each.noise}),
     )
 
 
+def around_legs(
+    given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
+) -> System:
+    """The plant with an inner system around each leg, from `tension.<actuator>` [N] to an addition to its stroke; `heard` adds to it."""
+    entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
+    for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
+        links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
+        links[f"tension.{each.actuator}"] = {f"{each.sensed}.fx": sign} | ({heard[number].name: 1.0} if heard else {})
+    return connect([rename(given.system, entries), *inner], links, (*given.system.inputs, *heard), outputs)
+
+
 def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
     """The legs with the axial stiffness that a plant's modes feel: stack and hinges in series, tension per stroke far above these modes."""
     forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
-    direct = _direct(given, forces)
+    slow = np.array([not name.startswith("amplifier.") for name in given.states])
+    direct = np.diag(residualise(forces, slow).D)
     return tuple(replace(each, stiffness=abs(float(value))) for each, value in zip(legs, direct, strict=True))
-
-
-def _direct(given: Plant, forces: System) -> Array:
-    """Tension per stroke (n,) at infinite frequency, amplifiers' lags aside."""
-    if not any(name.startswith("amplifier.") for name in given.states):
-        return np.diag(forces.D)
-    kept = np.array([not name.startswith("amplifier.") for name in given.states])
-    fast = ~kept
-    gains = -np.linalg.solve(forces.A[np.ix_(fast, fast)], forces.B[fast])
-    return np.diag(forces.D + forces.C[:, fast] @ gains)
 
 
 def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:

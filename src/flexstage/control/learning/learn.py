@@ -12,7 +12,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Along, Axes, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import FREQUENCY
-from flexstage.control.learning.responses import Band, frequencies_of, inverse, motions, readings, through
+from flexstage.control.learning.responses import Band, frequencies_of, motions, readings, scaled_norms, through
 from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.system import System
 
@@ -101,8 +101,8 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
     worst = np.zeros(len(lines))
     for offset in np.linspace(-spread, spread, _OFFSETS):
         left = np.eye(len(scale)) - gain * readings(plant, control, lines, float(offset)) @ back
-        worst = np.maximum(worst, np.linalg.norm(left * scale[:, None] / scale, ord=2, axis=(1, 2)))
-    asked = np.linalg.norm(back * scale[:, None] / scale, ord=2, axis=(1, 2))
+        worst = np.maximum(worst, scaled_norms(left, scale))
+    asked = scaled_norms(back, scale)
     beyond = np.flatnonzero((worst > _CONTRACTS) | (asked > _MOST_INVERTED))
     if len(beyond) and beyond[0] == 0:
         what = f"with all modes up to {100.0 * spread:g} % off, a pass would leave {worst[0]:.3g} times the error at {lines[0]:.3g} Hz"
@@ -128,11 +128,8 @@ def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) ->
     """What the gauges would tell (n, k) of a true path (n, k): their lags are known, up to four times a band's end."""
     step = closed.step or 1.0
     frequencies = frequencies_of(wanted, step)
-    share = Band(min(4.0 * end, 0.45 / step)).gains(frequencies)
-    seen = np.broadcast_to(np.eye(wanted.shape[1]), (len(frequencies), wanted.shape[1], wanted.shape[1])).astype(complex)
-    inside = share > 0.0
-    told = readings(closed.plant, control, frequencies[inside]) @ np.linalg.inv(motions(closed, frequencies[inside]))
-    seen[inside] = share[inside, None, None] * told + (1.0 - share[inside, None, None]) * seen[inside]
+    band = Band(min(4.0 * end, 0.45 / step))
+    seen = band.blend(frequencies, lambda lines: readings(closed.plant, control, lines) @ np.linalg.inv(motions(closed, lines)))
     return through(seen, wanted)
 
 
@@ -155,9 +152,7 @@ def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wan
     frequencies = frequencies_of(wanted, closed.step or 1.0)
     filtered = robust.band.gains(frequencies)
     whole = Band(0.75 * robust.band.end).gains(frequencies)
-    back = np.zeros((len(frequencies), wanted.shape[1], wanted.shape[1]), complex)
-    inside = filtered > 0.0
-    back[inside] = filtered[inside, None, None] * lesson.gain * np.linalg.inv(readings(closed.plant, control, frequencies[inside]))
+    back = lesson.gain * robust.band.blend(frequencies, lambda lines: np.linalg.inv(readings(closed.plant, control, lines)), 0.0)
     target, added, rms = wanted_readings(closed, control, wanted, robust.band.end), np.zeros_like(wanted), []
     error, fades = target, fade_ends(len(wanted), lesson.window)[:, None]
     for number in range(lesson.passes + 1):
@@ -205,10 +200,6 @@ def _rms(values: Array) -> Array:
 
 def inverse_path(closed: Loop, control: System, wanted: Array, spread: float) -> Array:
     """What to command (n, f) so that the model's loop truly follows a path (n, f), at rest at both ends, in the robust band."""
-    robust = robust_band(closed, control, 1.0, spread)
+    band = robust_band(closed, control, 1.0, spread).band
     frequencies = frequencies_of(wanted, closed.step or 1.0)
-    band = robust.band.gains(frequencies)
-    found = np.broadcast_to(np.eye(wanted.shape[1]), (len(frequencies), wanted.shape[1], wanted.shape[1])).astype(complex)
-    inside = band > 0.0
-    found[inside] = inverse(motions(closed, frequencies[inside]), band[inside])
-    return through(found, wanted)
+    return through(band.blend(frequencies, lambda lines: np.linalg.inv(motions(closed, lines))), wanted)

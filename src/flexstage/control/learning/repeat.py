@@ -14,7 +14,7 @@ from flexstage.base.number import Array
 from flexstage.base.record import INNER, Along, Axes, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import FREQUENCY, TIME
 from flexstage.control.learning.learn import BEYOND, IN_BAND, fade_ends, filter_path, line_grid, robust_band, wanted_readings
-from flexstage.control.learning.responses import Band, frequencies_of, readings
+from flexstage.control.learning.responses import Band, frequencies_of, readings, scaled_norms
 from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.system import System
 
@@ -53,12 +53,6 @@ class Repeater:
         turned = np.exp(-2j * np.pi * np.outer(frequencies, late) * step)
         return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
 
-    def share_left(self, closed: Loop, control: System, frequencies: Array) -> Array:
-        """What is left (n, f, f) of an error that repeats at harmonics, (I - W) (I - W + L P)^-1 by the model: 0 where W is 1."""
-        own, (keep, teach) = np.eye(self.teach.shape[-1]), self.at(frequencies, closed.step or 1.0)
-        bare = own - keep[:, None, None] * own
-        return bare @ np.linalg.inv(bare + readings(closed.plant, control, frequencies) @ teach)
-
 
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
     """Filters for a `period` [s], a `gain` of the loop's inverse, all modes up to `spread` off, in the widest band where they contract.
@@ -73,7 +67,7 @@ def repeater(closed: Loop, control: System, period: float, gain: float, spread: 
         found = _repeater(closed, control, period, Band(end), gain)
         kept, taught = found.at(lines, step)
         own = kept[:, None, None] * np.eye(taught.shape[-1])
-        contraction = max(float(np.max(_norms(own - each @ taught, closed.plant.coordinates.scale))) for each in moved)
+        contraction = max(float(np.max(scaled_norms(own - each @ taught, closed.plant.coordinates.scale))) for each in moved)
         if contraction < _CONTRACTS:
             worse = _amplification(own, own - moved[_OFFSETS // 2] @ taught, closed.plant.coordinates.scale)
             return replace(found, contraction=contraction, amplifies=worse)
@@ -98,23 +92,21 @@ def _repeater(closed: Loop, control: System, period: float, band: Band, gain: fl
 def _amplification(kept: Array, left: Array, scale: Array) -> float:
     """The largest ||(I + W z) (I + (W - P L) z)^-1|| over |z| = 1, of W (n, f, f) and W - P L."""
     own, turns = np.eye(left.shape[-1]), np.exp(2j * np.pi * np.arange(_PHASES) / _PHASES)
-    return max(float(np.max(_norms((own - z * kept) @ np.linalg.inv(own - z * left), scale))) for z in turns)
-
-
-def _norms(values: Array, scale: Array) -> Array:
-    return np.linalg.norm(values * scale[:, None] / scale, ord=2, axis=(1, 2))
+    return max(float(np.max(scaled_norms((own - z * kept) @ np.linalg.inv(own - z * left), scale))) for z in turns)
 
 
 def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: int, early: float) -> tuple[Array, Array]:
     """Taps of Q and of Q gain P^^-1 from `reach` samples before to as many after, ahead by a part of a sample, their ends faded out."""
-    step, axes = closed.step or 1.0, len(closed.plant.coordinates.names)
+    step = closed.step or 1.0
     count = 2 ** int(np.ceil(np.log2(_FINEST * (2 * reach + 1))))
     lines = np.fft.rfftfreq(count, step)
     lines[0] = 1e-3 * lines[1]
-    gains = band.gains(lines) * np.exp(2j * np.pi * lines * step * early)
-    inside = np.abs(gains) > 0.0
-    back = np.zeros((len(lines), axes, axes), complex)
-    back[inside] = gain * gains[inside, None, None] * np.linalg.inv(readings(closed.plant, control, lines[inside]))
+    phase = np.exp(2j * np.pi * lines * step * early)
+    gains, inverse = (
+        band.gains(lines) * phase,
+        band.blend(lines, lambda inside: np.linalg.inv(readings(closed.plant, control, inside)), 0.0),
+    )
+    back = gain * phase[:, None, None] * inverse
     places = np.arange(-reach, reach + 1)
     window = 0.5 * (1.0 + np.cos(np.pi * places / (reach + 1.0)))
     keep, teach = (np.fft.irfft(each, n=count, axis=0)[places] for each in (gains, back))

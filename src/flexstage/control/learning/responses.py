@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.closed import Loop, pose_controller
 from flexstage.control.systems.system import System, select
 
 _AT_REST = 1e-4
@@ -24,30 +24,16 @@ def readings(plant: Plant, control: System, frequencies: Array, offset: float = 
     y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. Modes that lie
     higher are time that runs faster, lags and delays with it.
     """
-    given = plant.hardware
-    slower = replace(given, rate=(given.rate or np.inf) / (1.0 + offset), delay=given.delay * (1.0 + offset))
-    moved = replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
-    P, names = resolvent(moved).at(frequencies), plant.coordinates.names
-    parts = {kind: _part(control, kind, names, frequencies) for kind in ("error", "pose", "reference")}
-    back = P @ (parts["error"] - parts["pose"])
-    return np.linalg.solve(np.eye(len(names)) + back, P @ (parts["error"] + parts["reference"]))
-
-
-def _part(control: System, kind: str, names: tuple[str, ...], frequencies: Array) -> Array:
-    wanted = [f"{kind}.{name}" for name in names]
-    known = [name for name in wanted if name in control.input_names]
-    found = np.zeros((len(frequencies), len(control.outputs), len(names)), complex)
-    if known:
-        seen = resolvent(select(control, known, control.output_names)).at(frequencies)
-        found[:, :, [wanted.index(name) for name in known]] = seen
-    return found
+    P = pose_plant(plant, offset).sweep(frequencies)
+    back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
+    return np.linalg.solve(np.eye(P.shape[1]) + P @ back, P @ forward)
 
 
 def motions(closed: Loop, frequencies: Array) -> Array:
     """Responses (f, k, k) from reference to the true motion against the ground."""
     names = closed.plant.coordinates.names
     whole = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in names])
-    return resolvent(whole).at(frequencies)
+    return whole.sweep(frequencies)
 
 
 @dataclass(frozen=True)
@@ -60,6 +46,21 @@ class Band:
         """Q (f,), from 1 to 0."""
         share = np.clip((np.asarray(frequencies) / self.end - _TAPER) / (1.0 - _TAPER), 0.0, 1.0)
         return 0.5 * (1.0 + np.cos(np.pi * share))
+
+    def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
+        """Q R + (1 - Q) I `beyond` (f, k, k): responses R within the band; beyond it unchanged (1) or nothing (0)."""
+        share = self.gains(frequencies)
+        inside = share > 0.0
+        responses, share = respond(frequencies[inside]), share[inside, None, None]
+        own = beyond * np.eye(responses.shape[-1])
+        found = np.broadcast_to(own, (len(frequencies), *own.shape)).astype(complex)
+        found[inside] = share * responses + (1.0 - share) * own
+        return found
+
+
+def scaled_norms(values: Array, scale: Array) -> Array:
+    """Largest singular values (f,) of matrices (f, k, k), coordinates taken as lengths."""
+    return np.linalg.norm(values * scale[:, None] / scale, ord=2, axis=(1, 2))
 
 
 def frequencies_of(path: Array, step: float) -> Array:
@@ -78,12 +79,3 @@ def through(responses: Array, path: Array) -> Array:
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)
-
-
-def inverse(responses: Array, band: Array) -> Array:
-    """Q T^-1 (f, k, k) + (1 - Q) of responses T: the inverse where the band is, what was commanded beyond it."""
-    own = np.eye(responses.shape[-1])
-    found = np.broadcast_to(own, responses.shape).astype(complex)
-    inside = band > 0.0
-    found[inside] = band[inside, None, None] * np.linalg.inv(responses[inside]) + (1.0 - band[inside, None, None]) * own
-    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from flexstage.base.arguments import UNLIMITED, CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.record import INNER, VIEW
-from flexstage.base.units.quantity import CURRENT, FREQUENCY, TIME
+from flexstage.base.units.quantity import CURRENT, FREQUENCY, TIME, Bound
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts import amplifier
@@ -47,7 +47,7 @@ class AmplifierSettings(amplifier.Amplifier):
 
     slew: float | None = None
     noise_density: float | None = None
-    bits: int | None = None
+    bits: Annotated[int, Bound(low=1.0, high=64.0)] | None = None
     current_noise: float | None = None
     charge: ChargeHold | None = None
 
@@ -174,6 +174,12 @@ def sampling_chain(
     thrusts = {name: part for name in assembly.thrusts if isinstance(part := assembly.actuator(name), ThrustActuator)}
     powers = _by_name(amplifiers, (*piezos, *thrusts), AmplifierSettings(), "actuator")
     limits = stroke_limits(mechanism)
+    require(
+        Finding(name, f"its {key} is {value:g}", "Give a positive number, or leave it out")
+        for name, setting in powers.items()
+        for key in ("bandwidth", "resistance", "current", "slew")
+        if (value := getattr(setting, key)) is not None and not value > 0.0
+    )
     require(finding for name in piezos for finding in _amplifier_findings(name, powers[name], piezos[name]))
     require(finding for name in thrusts for finding in _thrust_findings(name, powers[name], thrusts[name]))
     senses = _by_name(gauges, tuple(placed), GaugeSettings(), "gauge")
@@ -250,14 +256,8 @@ def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator
     for key in ("current", "current_noise"):
         if getattr(setting, key) is not None and part.input is not CURRENT:
             yield Finding(name, f"{key} is given, and its input is {part.input.noun}", "Leave it out, or describe it as a voice coil")
-    if setting.bits is not None and not 1 <= setting.bits <= 64:
-        yield Finding(name, f"its converter has {setting.bits} bits", "Give 1 to 64")
-    elif setting.bits is not None and np.isinf(_largest_input(setting, part)):
+    if setting.bits is not None and np.isinf(_largest_input(setting, part)):
         yield Finding(name, "bits divide the range of its input, which has no end", 'Add for example peak_current = "5 A" to its part')
-    for key in ("bandwidth", "current"):
-        value = getattr(setting, key)
-        if value is not None and not value > 0.0:
-            yield Finding(name, f"its {key} is {value:g}", "Give a positive number, or leave it out")
 
 
 def _slew(setting: AmplifierSettings, gain: float, capacitance: float) -> float:
@@ -276,7 +276,7 @@ def _gain(piezo: ChargedActuator) -> float:
 def _sensor(setting: GaugeSettings, gauge: Instrument) -> Sensor:
     return Sensor(
         bandwidth=_first_stated(setting.bandwidth, gauge.bandwidth, np.inf),
-        noise_density=setting.noise_density if setting.noise_density is not None else _float_or_none(gauge.noise_density),
+        noise_density=_first_stated(setting.noise_density, gauge.noise_density),
         resolution=_first_stated(setting.resolution, gauge.resolution, 0.0),
         filter_order=setting.filter_order,
         filter_corner=np.inf if setting.filter_corner is None else setting.filter_corner,
@@ -284,12 +284,9 @@ def _sensor(setting: GaugeSettings, gauge: Instrument) -> Sensor:
     )
 
 
-def _float_or_none(value: object) -> float | None:
-    return None if value is None else float(value)  # type: ignore[arg-type]
-
-
-def _first_stated(*values: object) -> float:
-    return next(float(value) for value in values if value is not None)  # type: ignore[arg-type]
+def _first_stated(*values: Any) -> Any:
+    """The first value that is stated, as a float; None without one."""
+    return next((float(value) for value in values if value is not None), None)
 
 
 def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedActuator) -> Iterator[Finding]:
@@ -306,12 +303,6 @@ def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedAct
         if getattr(setting, key) is not None and np.isnan(_gain(piezo)):
             what = f"{key} needs its stack's voltage range, which is not stated"
             yield Finding(name, what, 'Add for example voltage_low = "0 V" and voltage_high = "1000 V"')
-    if setting.bits is not None and not 1 <= setting.bits <= 64:
-        yield Finding(name, f"its converter has {setting.bits} bits", "Give 1 to 64")
-    for key in ("bandwidth", "resistance", "current", "slew"):
-        value = getattr(setting, key)
-        if value is not None and not value > 0.0:
-            yield Finding(name, f"its {key} is {value:g}", "Give a positive number, or leave it out")
 
 
 def _findings(given: Hardware) -> Iterable[Finding]:

@@ -14,6 +14,7 @@ from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.plants import Plant
+from flexstage.control.plant_models.reduction import mode_names
 from flexstage.control.systems.system import System, connect, lag, rename, select, static
 from flexstage.experiment.identification.diagnosis.lateness import common_delay
 from flexstage.experiment.identification.identified import Identified
@@ -111,7 +112,7 @@ def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
 
 def _kept(given: Plant) -> list[int]:
     """Numbers of the model's modes that the plant has kept."""
-    return [int(name.removeprefix("mode")) - 1 for name in given.states if name.startswith("mode") and not name.endswith("'")]
+    return [int(name.removeprefix("mode")) - 1 for name in mode_names(given)]
 
 
 def _assurance(seen: Array, shapes: Array, frequencies: Array, column: int) -> float:

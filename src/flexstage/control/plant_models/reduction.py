@@ -33,7 +33,7 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
     count = int(np.sum(kept))
     return replace(
         given,
-        system=_residualise(given.system, slow),
+        system=residualise(given.system, slow),
         states=tuple(name for name, each in zip(given.states, slow, strict=True) if each),
         frequencies=given.frequencies[kept],
         ratios=given.ratios[kept],
@@ -53,7 +53,7 @@ def resonances(given: Plant) -> Array:
     """
     loop = given.coordinates
     modal = np.array([name.startswith("mode") for name in given.states])
-    stage = _residualise(select(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
+    stage = residualise(select(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
     names = [name for name, each in zip(given.states, modal, strict=True) if each]
     sizes = np.zeros(len(given.frequencies))
     for index, (name, frequency, ratio) in enumerate(zip(mode_names(given), given.frequencies, given.ratios, strict=True)):
@@ -81,7 +81,7 @@ def mode_names(given: Plant) -> list[str]:
     return [name for name in given.states if name.startswith("mode") and not name.endswith("'")]
 
 
-def _residualise(system: System, slow: Array) -> System:
+def residualise(system: System, slow: Array) -> System:
     """The system whose other states follow at once."""
     fast = ~slow
     if not np.any(fast):

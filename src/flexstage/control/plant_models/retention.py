@@ -14,10 +14,9 @@ from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.plant_models.electronics import Hardware
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.plant_models.reduction import mode_names
-from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins, feedback_response, reference_response
-from flexstage.control.systems.closed import Loop
+from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins
+from flexstage.control.systems.closed import Loop, pose_controller
 from flexstage.control.systems.curves import dense_frequencies
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.sampling import split_delay
 from flexstage.control.systems.system import select
 from flexstage.spatial.frame import COMPONENTS
@@ -118,10 +117,11 @@ def _contributions(whole: Plant, kept: Array, closed: Loop) -> _Contributions:
     lines = _lines(closed, poles.values)
     lines = np.unique(np.concatenate([lines, own[own > lines[0]]]))
     place = np.clip(np.searchsorted(lines, own), 0, len(lines) - 1)
-    seen = LoopLines(lines, loop.scale, feedback_response(closed.controller, loop, lines))
-    plant = loop.pose @ resolvent(select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges])).at(lines)
-    back, forward = seen.control @ seen.sensitivity(plant), reference_response(closed.controller, loop, lines)
-    forward = forward - back @ plant @ forward
+    feedback, reference = np.split(pose_controller(closed.controller, loop).sweep(lines), 2, axis=2)
+    seen = LoopLines(lines, loop.scale, feedback)
+    plant = loop.pose @ select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges]).sweep(lines)
+    back = feedback @ seen.sensitivity(plant)
+    forward = reference - back @ plant @ reference
     held = poles.held(lines, hardware)
     peaks = np.max(np.abs(held[:, place, np.arange(len(own))]), axis=0)
     driven = [np.linalg.norm(np.einsum("dn,dnc->dc", poles.entries, each[place]) / loop.scale, axis=1) for each in (back, forward)]

@@ -14,10 +14,9 @@ from flexstage.base.record import INNER, Heading, Layout
 from flexstage.base.units.quantity import ANGLE, FREQUENCY
 from flexstage.control.robustness.singular import balance, lower_bound, upper_bound
 from flexstage.control.robustness.stability import require_stable
-from flexstage.control.systems.closed import Loop, LoopBreak, open_at, open_everywhere
+from flexstage.control.systems.closed import Loop, LoopBreak, open_at
 from flexstage.control.systems.curves import dense_frequencies, sensitivity
 from flexstage.control.systems.norm import Plane, level_crossings, peak, to_plane
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
 _SLACK = 1e-3
@@ -84,8 +83,8 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
     return Edge(1.0 / found.value, found.frequency)
 
 
-def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
-    """The disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both ends together.
+def disk_margins(closed: Loop, cut: LoopBreak, skew: float = 0.0) -> DiskMargin:
+    """The disk margin of all loops at once: at the poses or at the commands.
 
     alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. From above mu <= min over
     diagonal D of sigma(D M D^-1), from below mu >= max over phases U of rho(U M). The bound from above holds at all frequencies: for each D
@@ -99,12 +98,11 @@ def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> Disk
     (True, True, True)
     """
     require_stable(closed, "disk margins")
-    open_loop = open_everywhere(closed) if cut is None else open_at(closed, cut)
+    open_loop = open_at(closed, cut)
     moved = _shift(sensitivity(open_loop), skew)
-    response = resolvent(moved)
     frequencies = dense_frequencies(moved.poles, moved.step)
-    lowest, highest, place = _search_bounds(response, frequencies)
-    level, covered = _guaranteed_level(moved, response, frequencies, highest * (1.0 + _SLACK))
+    lowest, highest, place = _search_bounds(moved, frequencies)
+    level, covered = _guaranteed_level(moved, frequencies, highest * (1.0 + _SLACK))
     return DiskMargin(open_loop.output_names, skew, 1.0 / level, 1.0 / lowest, place, covered)
 
 
@@ -116,9 +114,9 @@ def _scale(matrices: Array, logs: Array) -> Array:
     return matrices * np.exp(logs[..., :, None] - logs[..., None, :])
 
 
-def _search_bounds(response: Resolvent, frequencies: Array) -> tuple[float, float, float]:
+def _search_bounds(moved: System, frequencies: Array) -> tuple[float, float, float]:
     """The highest bounds from below and above, and where the one from below stands: local maxima over frequency followed to their tops."""
-    matrices = response.at(frequencies)
+    matrices = moved.sweep(frequencies)
     sizes = np.linalg.svd(_scale(matrices, balance(matrices)), compute_uv=False)[:, 0]
     padded = np.concatenate([[-1.0], sizes, [-1.0]])
     tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
@@ -127,19 +125,19 @@ def _search_bounds(response: Resolvent, frequencies: Array) -> tuple[float, floa
         if sizes[top] < highest * (1.0 - _NEAR):
             break
         ends = float(frequencies[max(top - 1, 0)]), float(frequencies[min(top + 1, len(frequencies) - 1)])
-        at, above = _local_maximum(response, ends)
-        below = lower_bound(response.at(np.array([at]))[0])[0]
+        at, above = _local_maximum(moved, ends)
+        below = lower_bound(moved.sweep(np.array([at]))[0])[0]
         highest = max(highest, above)
         if below > lowest:
             lowest, place = below, at
     return lowest, highest, place
 
 
-def _local_maximum(response: Resolvent, ends: tuple[float, float]) -> tuple[float, float]:
+def _local_maximum(moved: System, ends: tuple[float, float]) -> tuple[float, float]:
     """Where the bound from above is highest between two frequencies, and how high."""
 
     def below(frequency: float) -> float:
-        return -_bound(response, frequency)[0]
+        return -_bound(moved, frequency)[0]
 
     options = {"xatol": 1e-7 * ends[1], "maxiter": 40}
     found: Any = scipy.optimize.minimize_scalar(below, bounds=ends, method="bounded", options=options)
@@ -149,12 +147,12 @@ def _local_maximum(response: Resolvent, ends: tuple[float, float]) -> tuple[floa
     return places[best], heights[best]
 
 
-def _bound(response: Resolvent, frequency: float) -> tuple[float, Array]:
-    matrix = response.at(np.array([frequency]))
+def _bound(moved: System, frequency: float) -> tuple[float, Array]:
+    matrix = moved.sweep(np.array([frequency]))
     return upper_bound(matrix[0], balance(matrix)[0])
 
 
-def _guaranteed_level(moved: System, response: Resolvent, frequencies: Array, level: float) -> tuple[float, bool]:
+def _guaranteed_level(moved: System, frequencies: Array, level: float) -> tuple[float, bool]:
     """The level below which mu is shown to stay at all frequencies, and whether it was shown."""
     end = np.inf if moved.step is None else 0.5 / moved.step
     plane = to_plane(moved)
@@ -164,23 +162,23 @@ def _guaranteed_level(moved: System, response: Resolvent, frequencies: Array, le
             return level, True
         low, high = open_.pop()
         middle = _next_frequency(low, high, frequencies)
-        size, logs = _bound(response, middle)
+        size, logs = _bound(moved, middle)
         if size >= level / (1.0 + 0.5 * _SLACK):
             level, open_ = size * (1.0 + _SLACK), [*open_, (low, high)]
             continue
         scale = np.exp(logs)
         system = replace(plane.system, B=plane.system.B / scale, C=plane.system.C * scale[:, None], D=_scale(plane.system.D, logs))
-        crossings = _true_crossings(replace(plane, system=system), response, logs, level)
+        crossings = _true_crossings(replace(plane, system=system), moved, logs, level)
         below, above = crossings[crossings < middle], crossings[crossings > middle]
         left, right = max(below, default=-np.inf), min(above, default=np.inf)
         open_ += [piece for piece in ((low, min(left, high)), (max(right, low), high)) if piece[1] > piece[0]]
     return level, False
 
 
-def _true_crossings(plane: Plane, response: Resolvent, logs: Array, level: float) -> Array:
+def _true_crossings(plane: Plane, moved: System, logs: Array, level: float) -> Array:
     """Those frequencies at which a singular value is the level indeed; eigenvalues near the axis leave more."""
     found = level_crossings(plane, level)
-    sizes = np.linalg.svd(_scale(response.at(found), logs), compute_uv=False)
+    sizes = np.linalg.svd(_scale(moved.sweep(found), logs), compute_uv=False)
     return found[np.min(np.abs(sizes / level - 1.0), axis=1) < _TRUE]
 
 

@@ -17,9 +17,8 @@ from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.measured_plant import channel_places
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins, feedback_response
-from flexstage.control.systems.closed import Loop
-from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins
+from flexstage.control.systems.closed import Loop, pose_controller
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.records.record import Responses
@@ -114,12 +113,12 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     scale = outer[:, None] / inner
     response = known.values[chosen] * scale
     late = np.sinc(lines * step) * np.exp(-2j * np.pi * lines * (0.5 * step + predicted.hardware.delay))
-    control = feedback_response(closed.controller, loop, lines)
+    control = pose_controller(closed.controller, loop).sweep(lines, slice(len(loop.names)))
     whole = LoopLines(lines, loop.scale, control)
     values = whole.margins((loop.pose @ response) * late[:, None, None])
     sure = bool(np.all(np.isfinite(known.deviations)))
     drawn = _draws(whole, loop, response, known.deviations[chosen] * scale, late) if sure else None
-    models = [whole.margins(resolvent(pose_plant(plant)).at(lines)) for plant in (closed.plant, predicted)]
+    models = [whole.margins(pose_plant(plant).sweep(lines)) for plant in (closed.plant, predicted)]
     names = loop.names
     low, high = (None, None) if drawn is None else np.quantile([each.sizes for each in drawn], _ENDS, axis=0)
 

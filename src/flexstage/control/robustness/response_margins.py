@@ -7,9 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.plant_models.coordinates import Coordinates
-from flexstage.control.systems.resolvent import resolvent
-from flexstage.control.systems.system import System
 
 _NOTHING = 1e-300
 """|L| of loops that are open."""
@@ -63,27 +60,6 @@ class LoopLines:
             tuple(delay for _, delay in turns),
             tuple(_rises(self.lines, np.abs(each)) for each in own.T),
         )
-
-
-def feedback_response(controller: System, loop: Coordinates, lines: Array) -> Array:
-    """From the error of each coordinate to all commands (f, n, c); what the controller takes of the pose is what the error leaves."""
-    return _response(controller, loop, lines, {"error": 1.0, "pose": -1.0})
-
-
-def reference_response(controller: System, loop: Coordinates, lines: Array) -> Array:
-    """From the reference of each coordinate to all commands (f, n, c), the pose at rest."""
-    return _response(controller, loop, lines, {"error": 1.0, "reference": 1.0})
-
-
-def _response(controller: System, loop: Coordinates, lines: Array, signs: dict[str, float]) -> Array:
-    whole = resolvent(controller).at(lines)
-    found = np.zeros((len(lines), len(loop.actuators), len(loop.names)), dtype=complex)
-    order = [controller.output_names.index(f"command.{name}") for name in loop.actuators]
-    for kind, sign in signs.items():
-        for column, channel in enumerate(loop.motions(f"{kind}.")):
-            if channel.name in controller.input_names:
-                found[:, :, column] += sign * whole[:, order, controller.input_names.index(channel.name)]
-    return found
 
 
 def _gains(own: Array) -> tuple[float, float]:

@@ -13,7 +13,9 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import FREQUENCY, RATE
+from flexstage.control.plant_models.reduction import mode_names
 from flexstage.control.systems.closed import Loop, LoopBreak, open_at
+from flexstage.control.systems.curves import rates_of
 from flexstage.control.systems.system import System
 
 _UP, _DOWN, _FARTHEST = 1.08, 0.6, 1000.0
@@ -79,7 +81,7 @@ def verdict(closed: Loop) -> Verdict:
 
 def _least(closed: Loop) -> tuple[Pole, Array]:
     poles, right = np.linalg.eig(closed.system.A)
-    rates = _rates(poles, closed.step)
+    rates = rates_of(poles, closed.step, 1e-300)
     order = np.lexsort((np.imag(rates) < 0.0, -np.round(np.real(rates), 9)))
     worst = int(order[0])
     left = _left(closed.system.A, poles[worst])
@@ -145,13 +147,6 @@ def require_stable(closed: Loop, what: str) -> None:
     require([Finding("loop", f"{what} of an unstable loop: {_sentence(closed, _least(closed)[0])}", advice)])
 
 
-def _rates(poles: Array, step: float | None) -> Array:
-    if step is None:
-        return poles.astype(complex)
-    size = np.abs(poles)
-    return np.log(np.where(size > 1e-300, poles, 1e-300).astype(complex)) / step
-
-
 def _left(A: Array, pole: complex) -> Array:
     """Left eigenvector of a pole by its own solve: registers make A defective at 0, where all of them together would not exist."""
     values, vectors = np.linalg.eig(A.T)
@@ -178,7 +173,7 @@ def _owner(closed: Loop, state: str) -> str:
 
 def _modes(closed: Loop, name: str) -> str:
     """A mode and those that cannot be told from it; a plant may have kept others than the lowest."""
-    kept = [each for each in closed.plant.states if each.startswith("mode") and not each.endswith("'")]
+    kept = mode_names(closed.plant)
     frequencies = dict(zip(kept, closed.plant.frequencies.tolist(), strict=True))
     alike = [each for each in kept if abs(frequencies[each] / frequencies[name] - 1.0) < _ALIKE]
     shown = ", ".join(each.removeprefix("mode") for each in alike)

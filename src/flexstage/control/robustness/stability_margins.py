@@ -19,7 +19,6 @@ from flexstage.control.robustness.stability import require_stable
 from flexstage.control.systems.closed import Loop, LoopBreak, open_at
 from flexstage.control.systems.curves import Curves, curves, roots, sensitivity
 from flexstage.control.systems.norm import Peak, peak
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.systems.system import System, select
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -105,8 +104,8 @@ def _channel(found: Curves, whole: System, number: int) -> ChannelMargins:
 def _gains(found: Curves, number: int) -> tuple[Edge, Edge]:
     """The nearest gains below and above 1 at which L_i = -1/k; both ends of the frequencies count, where L_i is real anyhow."""
     places, own = found.crossings(np.imag, number)
-    ends = np.array([0.0] if found.response.system.step is None else [0.0, 0.5 / found.response.system.step])
-    places, own = np.append(places, ends), np.append(own, found.response.at(ends)[:, number, number])
+    ends = np.array([0.0] if found.response.step is None else [0.0, 0.5 / found.response.step])
+    places, own = np.append(places, ends), np.append(own, found.response.sweep(ends)[:, number, number])
     with np.errstate(divide="ignore", invalid="ignore"):
         gains = 1.0 / (1.0 - 1.0 / np.real(own))
     edges = [(float(gain), float(place)) for gain, place in zip(gains, places, strict=True) if _AT_REST < gain < np.inf]
@@ -122,9 +121,7 @@ def _phases(found: Curves, number: int) -> tuple[Edge, Edge]:
     delays = (turns % (2.0 * np.pi)) / (2.0 * np.pi * places)
     phase = min(zip(np.abs(turns).tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
     delay = min(zip(delays.tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
-    return Edge(*phase), (
-        Edge(0.0, np.inf) if _has_direct_gain(found.response.system.D[number, number], found.response.system.step) else Edge(*delay)
-    )
+    return Edge(*phase), (Edge(0.0, np.inf) if _has_direct_gain(found.response.D[number, number], found.response.step) else Edge(*delay))
 
 
 def _has_direct_gain(own: complex, step: float | None) -> bool:
@@ -207,7 +204,7 @@ def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
 def _rise(found: Curves, number: int, of: Callable[[Array], Array]) -> float:
     """Where a function of S_ii first rises through 0."""
     values = of(found.sensitivity[:, number, number])
-    return _first_rise(found.frequencies, values, lambda points: of(found.response.at(points)[:, number, number]))
+    return _first_rise(found.frequencies, values, lambda points: of(found.response.sweep(points)[:, number, number]))
 
 
 def _first_rise(frequencies: Array, values: Array, of: Callable[[Array], Array]) -> float:
@@ -222,18 +219,18 @@ def _first_rise(frequencies: Array, values: Array, of: Callable[[Array], Array])
 
 def _tracking(closed: Loop, found: Curves, number: int) -> float:
     name = found.names[number]
-    response = resolvent(select(closed.system, [f"reference.{name}"], [f"relative.{name}"]))
+    response = select(closed.system, [f"reference.{name}"], [f"relative.{name}"])
 
     def below(points: Array) -> Array:
-        return np.sqrt(0.5) - np.abs(response.at(points)[:, 0, 0])
+        return np.sqrt(0.5) - np.abs(response.sweep(points)[:, 0, 0])
 
     return _first_rise(found.frequencies, below(found.frequencies), below)
 
 
-def crosstalk(closed: Loop, frequency: float = 0.0) -> Matrix:
-    """What moves for each reference: all six motions of the platform against the ground per coordinate commanded.
+def crosstalk(closed: Loop) -> Matrix:
+    """What moves for each reference: all six motions of the platform against the ground per coordinate commanded, at rest.
 
-    At rest (`frequency` 0) with signs, at a frequency [Hz] the amplitudes. The coordinates themselves are tracking, all else is crosstalk.
+    The coordinates themselves are tracking, all else is crosstalk.
     Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
@@ -243,5 +240,4 @@ def crosstalk(closed: Loop, frequency: float = 0.0) -> Matrix:
     require_stable(closed, "crosstalk")
     names = closed.plant.coordinates.names
     chosen = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in COMPONENTS])
-    found = chosen.transfer(np.array([frequency]))[0]
-    return Matrix(np.abs(found) if frequency else found.real, COMPONENTS, names, ratio_units(TWIST_UNITS, closed.plant.coordinates.units))
+    return Matrix(chosen.transfer(np.zeros(1))[0].real, COMPONENTS, names, ratio_units(TWIST_UNITS, closed.plant.coordinates.units))

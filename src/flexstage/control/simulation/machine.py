@@ -159,7 +159,7 @@ def machine(
     return Machine(
         plant=kept,
         controller=controller,
-        coordinates=tuple(Channel(name, unit) for name, unit in zip(loop.names, loop.units, strict=True)),
+        coordinates=loop.motions(),
         actuators=given.actuators,
         gauges=given.gauges,
         pose=loop.pose,

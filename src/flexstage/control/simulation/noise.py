@@ -13,7 +13,6 @@ from flexstage.base.number import Array
 from flexstage.base.stream import generator
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.white_noise import gauge_noise
 
 
@@ -52,7 +51,7 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
         density = given.hardware.sensors.get(name, Sensor()).noise_density
         if density:
             frequencies = np.fft.rfftfreq(_length(samples), step)
-            sampled = resolvent(gauge_noise(given, name, density)).at(frequencies)
+            sampled = gauge_noise(given, name, density).sweep(frequencies)
             aliased = 2.0 * step * np.sum(np.abs(sampled) ** 2, axis=(1, 2))
             found[f"noise.{name}"] = shape(aliased, samples, step, (seed, Stream.GAUGE, number))
     for number, name in enumerate(given.actuators):

@@ -27,9 +27,6 @@ from flexstage.control.study.setup import (
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.grammar import node_of
 
-_HIGHEST_ORDER = 20
-_MOST_PASSES = 50
-_MOST_LINES = 100_000
 _TUNED = ("bandwidth", "sensitivity", "goal")
 
 
@@ -42,10 +39,6 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
     """
     for address, value, node in node_of(LoopSetup).numbers(setup):
         yield from number_findings(address, value, node)
-    if setup.seed < 0:
-        yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
-    if setup.modes is not None and setup.modes < 1:
-        yield Finding("modes", f"found {setup.modes}", "Keep at least one, or leave it out")
     yield from setup.amplifier.faults
     yield from _gauges(setup.gauges)
     yield from _floor(setup.floor)
@@ -60,8 +53,6 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
 def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
     if isinstance(found, FileMotion) and not Path(found.file).is_file():
         yield Finding(found.file, "there is no such file", "Check the path: a CSV table of times and poses")
-    if isinstance(found, RasterMotion) and not 1 <= found.lines <= _MOST_LINES:
-        yield Finding("trajectory.lines", f"found {found.lines}", f"Give between 1 and {_MOST_LINES}")
     pair = (found.fast, found.slow) if isinstance(found, RasterMotion) else None
     pair = (found.first, found.second) if isinstance(found, SpiralMotion) else pair
     if pair is not None and pair[0] is pair[1]:
@@ -75,9 +66,7 @@ def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
 
 
 def _gauges(found: GaugeSetup) -> Iterator[Finding]:
-    if not 0 <= found.filter_order <= _HIGHEST_ORDER:
-        yield Finding("gauges.filter_order", f"found {found.filter_order}", f"Give an order from 0 (none) to {_HIGHEST_ORDER}")
-    elif found.filter_order and found.filter_corner is None:
+    if found.filter_order and found.filter_corner is None:
         yield Finding("gauges.filter_order", f"a filter of order {found.filter_order} has no corner", "Give filter_corner, or order 0")
     elif found.filter_corner is not None and not found.filter_order:
         yield Finding("gauges.filter_corner", "a corner is given, but order 0 is no filter", "Give filter_order, for example 4")
@@ -141,15 +130,11 @@ def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
         )
     if not shaped and found.frequency is not None:
         yield Finding("follow.frequency", f"{found.method.value} has no mode of its own", "Leave it out, or take zv or zvd")
-    if not 1 <= found.passes <= _MOST_PASSES:
-        yield Finding("follow.passes", f"found {found.passes}", f"Give between 1 and {_MOST_PASSES}")
 
 
 def _damping(found: DampingSetup) -> Iterator[Finding]:
     if found.ratio is not None and found.gain is not None:
         yield Finding("damping", "both a damping ratio and a gain are given", "Give one of them: the other follows")
-    if found.order not in (1, 2):
-        yield Finding("damping.order", f"found {found.order}", "Give 2, which keeps the stiffness at rest, or 1")
     if found.gauges and found.noise is not None:
         yield Finding(
             "damping.noise", "it is that of force sensors, and strain gauges sense the legs", "Leave it out: theirs is in the design"

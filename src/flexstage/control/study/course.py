@@ -22,7 +22,7 @@ from flexstage.control.trajectory.path import Trajectory, reference
 from flexstage.control.trajectory.profile import Limits
 from flexstage.control.trajectory.raster import Raster
 from flexstage.control.trajectory.sine import Sine
-from flexstage.control.trajectory.spiral import EvenSpeed, Spiral
+from flexstage.control.trajectory.spiral import Spiral
 from flexstage.control.trajectory.step import Step
 from flexstage.control.trajectory.table import from_file
 from flexstage.spatial.frame import COMPONENTS
@@ -91,7 +91,7 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[C
         pair = (commanded.first.value, commanded.second.value)
         way = np.pi * commanded.radius**2 / commanded.pitch
         ramp = min(_RAMP, 0.2 * way / commanded.speed)
-        spiral = Spiral(commanded.radius, commanded.pitch, EvenSpeed(commanded.speed), ramp, coordinates=pair)
+        spiral = Spiral(commanded.radius, commanded.pitch, commanded.speed, ramp, coordinates=pair)
         yield Course("spiral", spiral, pair, spiral.duration, pair)
     elif isinstance(commanded, SineMotion):
         sizes = stated_motions(commanded.amplitude) or dict([next(iter(_default_motions(coordinates.names).items()))])

@@ -308,10 +308,14 @@ def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simul
     noisy = given.floor or any(each.noise_density for each in (*hardware.sensors.values(), *hardware.amplifiers.values()))
     if not noisy:
         return None
+    noisy, count = _resting_loop(given, control, closed)
+    return noisy.simulate(np.zeros((count, len(given.plant.coordinates.names))))
+
+
+def _resting_loop(given: ResolvedSetup, control: Control, closed: Loop) -> tuple[DisturbedLoop, int]:
+    """The loop with its noise, and the samples of a simulation at rest."""
     rest = rest_time(closed)
-    count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST))
-    poses = np.zeros((count, len(given.plant.coordinates.names)))
-    return DisturbedLoop(given, driven_machine(given, control), rest).simulate(poses)
+    return DisturbedLoop(given, driven_machine(given, control), rest), int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST))
 
 
 @dataclass(frozen=True, eq=False)
@@ -333,12 +337,12 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
 
     Each holds another place within the gauges' steps: on the middle of a step a loop rests, near its edge it wanders to and fro.
     """
-    rest = rest_time(closed)
-    count = int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST)) // 3
-    computed, to_pose = driven_machine(given, control), given.plant.coordinates.pose
-    squares, noisy = list[Array](), DisturbedLoop(given, computed, rest)
+    (noisy, whole), to_pose, squares = _resting_loop(given, control, closed), given.plant.coordinates.pose, list[Array]()
+    count = whole // 3
     for number in range(_REPEATED):
-        within = np.random.default_rng([given.setup.seed + number, _REPEATED]).uniform(-0.5, 0.5, to_pose.shape[1]) * computed.resolution
+        within = (
+            np.random.default_rng([given.setup.seed + number, _REPEATED]).uniform(-0.5, 0.5, to_pose.shape[1]) * noisy.machine.resolution
+        )
         held = to_pose @ within
         found = noisy.simulate(np.tile(held, (count, 1)), number, held)
         squares.append(np.mean(found.true_error**2, axis=0))

@@ -32,7 +32,7 @@ from flexstage.control.study.choices import Axes, Axis, Compensation, Controller
 from flexstage.control.study.hardware.amplifier_kinds import AMPLIFIERS
 from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.mechanism.grammar.node import ChoiceNode, Wanted
+from flexstage.mechanism.grammar.node import ChoiceNode
 from flexstage.models.theory import Model
 
 _PEAK = Bound(low=1.0, open_low=True)
@@ -50,10 +50,6 @@ class KindNode(ChoiceNode):
     def words(self) -> dict[str, Any]:
         """The kinds by what a file calls them."""
         return {each.value: each for each in ControllerKind} | {name: OfferedKind(name) for name in CONTROLLERS}
-
-    def wanted(self, value: Any) -> Wanted:
-        """One of the kinds."""
-        return None if value in self.words.values() else ("a kind of controller", f"Give one of {', '.join(self.words)}")
 
 
 KINDS = KindNode(ControllerKind)
@@ -84,7 +80,7 @@ class GaugeSetup(CheckedFields):
     noise: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
     resolution: Annotated[float, DISPLACEMENT, NOT_NEGATIVE] | None = None
     bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    filter_order: int = 0
+    filter_order: Annotated[int, Bound(low=0.0, high=20.0)] = 0
     filter_corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
 
 
@@ -214,7 +210,7 @@ class DampingSetup(CheckedFields):
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
     gain: Annotated[float, RATE, POSITIVE] | None = None
     corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    order: int = 2
+    order: Annotated[int, Bound(low=1.0, high=2.0)] = 2
     gauges: tuple[str, ...] = ()
     noise: Annotated[float, FORCE_NOISE, NOT_NEGATIVE] | None = None
     lag: Annotated[float, FREQUENCY, POSITIVE] | None = None
@@ -232,7 +228,7 @@ class FollowSetup(CheckedFields):
     """
 
     method: Following
-    passes: int = 10
+    passes: Annotated[int, Bound(low=1.0, high=50.0)] = 10
     gain: Annotated[float, RATIO, _DAMPED] = 0.6
     spread: Annotated[float, RATIO, _SPREAD] = 0.02
     frequency: Annotated[float, FREQUENCY, POSITIVE] | None = None
@@ -282,7 +278,7 @@ class RasterMotion(CheckedFields):
 
     length: Annotated[float, DISPLACEMENT, POSITIVE] = 10e-6
     pitch: Annotated[float, DISPLACEMENT, POSITIVE] = 1e-6
-    lines: int = 6
+    lines: Annotated[int, Bound(low=1.0, high=1e5)] = 6
     speed: Annotated[float, SPEED, POSITIVE] = 0.1e-3
     acceleration: Annotated[float, ACCELERATION, POSITIVE] = 5e-3
     fast: Axis = Axis.X
@@ -343,9 +339,9 @@ class LoopSetup(CheckedFields):
     model: Model = Model.LUMPED
     rate: Annotated[float, FREQUENCY, POSITIVE] | None = None
     delay: Annotated[float, TIME, NOT_NEGATIVE] | None = None
-    modes: int | None = None
+    modes: Annotated[int, Bound(low=1.0)] | None = None
     seconds: Annotated[float, TIME, POSITIVE] | None = None
-    seed: int = 0
+    seed: Annotated[int, NOT_NEGATIVE] = 0
     compensate: tuple[Compensation, ...] = (Compensation.LOST_MOTION,)
     amplifier: Annotated[AmplifierForm, AMPLIFIERS] = field(default_factory=AmplifierSetup)
     gauges: GaugeSetup = field(default_factory=GaugeSetup)

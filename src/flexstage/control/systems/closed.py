@@ -10,6 +10,8 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.plants import Plant, zero_order_hold
 from flexstage.control.systems.system import System, connect, rename, select, static
 from flexstage.models.linear.model import Channel
@@ -84,6 +86,22 @@ def loop(given: Plant, controller: System) -> Loop:
     return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
 
 
+def pose_controller(controller: System, coordinates: Coordinates, sense: Array | None = None) -> System:
+    """The controller from errors that come back (pose and error inputs together), then from references, to its outputs.
+
+    With the map `sense` (k, c) of loops both are those of the loops, not of the coordinates.
+    """
+    names, known = coordinates.names, controller.input_names
+    entry = np.zeros((2, len(known), len(names)))
+    for kind, signs in (("error", (1.0, 1.0)), ("pose", (-1.0, 0.0)), ("reference", (0.0, 1.0))):
+        for number, name in enumerate(names):
+            if f"{kind}.{name}" in known:
+                entry[:, known.index(f"{kind}.{name}"), number] = signs
+    whole = np.hstack([*entry]) if sense is None else np.hstack([*entry]) @ np.kron(np.eye(2), np.linalg.inv(sense))
+    inputs = tuple(Channel(f"{kind}.{number}", "m") for kind in ("error", "reference") for number in range(len(names)))
+    return replace(controller, B=controller.B @ whole, D=controller.D @ whole, inputs=inputs)
+
+
 def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     """The open loop L of a negative feedback: S = (I + L)^-1, from what goes into the cut to minus what comes back.
 
@@ -103,17 +121,6 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     if channel is not None and channel not in outer:
         raise refuse(channel, f"the loop has no such {cut.value}", suggest_nearest(channel, outer))
     return _loop_cut(closed, outer.values() if channel is None else [outer[channel]])
-
-
-def open_everywhere(closed: Loop) -> System:
-    """The loop cut open at all poses and all commands at once, in this order: for what acts at both its ends together.
-
-    >>> from flexstage.control.example import integral_loop
-    >>> found = open_everywhere(integral_loop())
-    >>> found.input_names, found.output_names
-    (('cut.x', 'cut.B'), ('pose.x', 'command.B'))
-    """
-    return _loop_cut(closed, [*LoopBreak.POSE.channels(closed.plant), *LoopBreak.COMMAND.channels(closed.plant)])
 
 
 def _loop_cut(closed: Loop, chosen: Iterable[Channel]) -> System:

@@ -9,7 +9,6 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.systems.closed import Loop, LoopBreak, open_at
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
 _OFFSETS = np.array([-81.0, -27.0, -9.0, -3.0, -1.0, 0.0, 1.0, 3.0, 9.0, 27.0, 81.0])
@@ -30,7 +29,7 @@ class Curves:
     names: tuple[str, ...]
     frequencies: Array
     sensitivity: Array
-    response: Resolvent
+    response: System
 
     @property
     def loops(self) -> Array:
@@ -43,8 +42,9 @@ class Curves:
         values = of(self.sensitivity[:, channel, channel])
         places = sign_changes(values)
         low, high = self.frequencies[places], self.frequencies[places + 1]
-        found = roots(lambda points: of(self.response.at(points)[:, channel, channel]), (low, high), (values[places], values[places + 1]))
-        return found, self.response.at(found)[:, channel, channel]
+        ends = (low, high), (values[places], values[places + 1])
+        found = roots(lambda points: of(self.response.sweep(points)[:, channel, channel]), *ends)
+        return found, self.response.sweep(found)[:, channel, channel]
 
 
 def sensitivity(open_loop: System) -> System:
@@ -72,27 +72,26 @@ def curves(closed: Loop, cut: LoopBreak) -> Curves:
     """
     whole = sensitivity(open_at(closed, cut))
     names = tuple(name.removeprefix(f"{cut.value}.") for name in whole.output_names)
-    response = resolvent(whole)
     poles = [whole.poles, *(open_at(closed, cut, name).poles for name in names)]
     frequencies = dense_frequencies(np.concatenate(poles), whole.step)
-    found = Curves(cut, names, frequencies, response.at(frequencies), response)
+    found = Curves(cut, names, frequencies, whole.sweep(frequencies), whole)
     for _ in range(_ROUNDS):
         between = refine(found)
         if not len(between) or len(found.frequencies) > _MOST:
             break
         places = np.searchsorted(found.frequencies, between)
-        refined = np.insert(found.sensitivity, places, response.at(between), axis=0)
+        refined = np.insert(found.sensitivity, places, whole.sweep(between), axis=0)
         found = replace(found, frequencies=np.insert(found.frequencies, places, between), sensitivity=refined)
     return found
 
 
-def rates_of(poles: Array, step: float | None) -> Array:
+def rates_of(poles: Array, step: float | None, least: float = 1e-6) -> Array:
     """Poles as rates [1/s]: themselves, or ln z / T of a sampled system (those at 0 become fast ones).
 
     >>> rates_of(np.array([np.exp(-0.5)]), 0.1).round(9).tolist()
     [(-5+0j)]
     """
-    return poles.astype(complex) if step is None else np.log(np.where(np.abs(poles) > 1e-6, poles, 1e-6).astype(complex)) / step
+    return poles.astype(complex) if step is None else np.log(np.where(np.abs(poles) > least, poles, least).astype(complex)) / step
 
 
 def points_around(rates: Array) -> Array:

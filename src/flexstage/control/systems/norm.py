@@ -11,7 +11,6 @@ import scipy
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import FREQUENCY
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
 _NEAR_AXIS = 1e-3
@@ -45,14 +44,14 @@ def peak(system: System) -> Peak:
     """
     if system.growth >= 0.0:
         raise refuse("peak", f"the system grows by {system.growth:.3g} 1/s", "Stabilise it first")
-    response, plane = resolvent(system), to_plane(system)
+    plane = to_plane(system)
     frequencies = _first_frequencies(system)
-    best = _highest_of(response, frequencies)
+    best = _highest_of(system, frequencies)
     least = (1.0 + _APART) * float(np.linalg.norm(plane.system.D, 2))
     for _ in range(30):
         crossings = level_crossings(plane, max(best.value * (1.0 + _ACCURACY), least)) if best.value > 0.0 else np.zeros(0)
         between = 0.5 * (crossings[1:] + crossings[:-1])
-        found = _climb(response, _highest_of(response, np.concatenate([crossings, between, [best.frequency]])))
+        found = _climb(system, _highest_of(system, np.concatenate([crossings, between, [best.frequency]])))
         if found.value <= best.value * (1.0 + _ACCURACY):
             return found if found.value > best.value else best
         best = found
@@ -134,27 +133,27 @@ def _first_frequencies(system: System) -> Array:
     return np.concatenate([[0.0, 0.5 / system.step], np.abs(np.angle(poles)) / (2.0 * np.pi * system.step)])
 
 
-def _sizes(response: Resolvent, frequencies: Array) -> Array:
-    return np.linalg.svd(response.at(frequencies), compute_uv=False)[:, 0]
+def _sizes(system: System, frequencies: Array) -> Array:
+    return np.linalg.svd(system.sweep(frequencies), compute_uv=False)[:, 0]
 
 
-def _highest_of(response: Resolvent, frequencies: Array) -> Peak:
-    sizes = _sizes(response, frequencies)
+def _highest_of(system: System, frequencies: Array) -> Peak:
+    sizes = _sizes(system, frequencies)
     place = int(np.argmax(sizes))
     return Peak(float(sizes[place]), float(frequencies[place]))
 
 
-def _climb(response: Resolvent, start: Peak) -> Peak:
+def _climb(system: System, start: Peak) -> Peak:
     """The same peak, followed up by parabolas of shrinking width."""
     if not np.isfinite(start.frequency) or start.frequency == 0.0:
         return start
     best, width = start, 1e-3 * start.frequency
-    end = np.inf if response.system.step is None else 0.5 / response.system.step
+    end = np.inf if system.step is None else 0.5 / system.step
     for _ in range(12):
         places = best.frequency + width * np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
-        sizes = _sizes(response, np.clip(places, 0.0, end))
+        sizes = _sizes(system, np.clip(places, 0.0, end))
         bend, slope, _ = np.polyfit(np.arange(-2, 3), sizes / sizes[2], 2)
         top = best.frequency - 0.25 * width * slope / bend if bend < 0.0 else best.frequency
-        found = _highest_of(response, np.clip(np.append(places, top), 0.0, end))
+        found = _highest_of(system, np.clip(np.append(places, top), 0.0, end))
         best, width = (found if found.value > best.value else best), 0.3 * width
     return best

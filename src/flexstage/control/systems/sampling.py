@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import scipy
@@ -11,17 +10,18 @@ import scipy
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.systems.system import System
-from flexstage.models.linear.model import Channel
 
 
-def discretise(system: System, step: float, delay: float = 0.0) -> System:
+def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) -> System:
     """A continuous system whose inputs are held over each `step` [s] and arrive `delay` [s] late; exact at the samples.
 
     With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d],
     Gamma_0 = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled
-    Systems, 1997, section 2.3). An output sampled while the input changes (f = 0) sees the new value. All inputs are delayed alike. Raises
+    Systems, 1997, section 2.3). An output sampled while the input changes (f = 0) sees the new value, the
+    first `early` outputs the one before. All inputs are delayed alike. Raises
     `DesignError` for a system that is sampled already, and for times that cannot be.
 
+    >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
     >>> lag = System(-np.eye(1), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
     >>> found = discretise(lag, np.log(2.0))
@@ -32,15 +32,25 @@ def discretise(system: System, step: float, delay: float = 0.0) -> System:
     """
     require(_findings(system, step, delay))
     whole, part = split_delay(delay / step)
-    early, start = _hold_matrices(system, (1.0 - part) * step)
+    after, start = _hold_matrices(system, (1.0 - part) * step)
     late, before = _hold_matrices(system, part * step)
-    direct = system.D if part == 0.0 else np.zeros_like(system.D)
-    held = np.zeros_like(system.D) if part == 0.0 else system.D
-    count = whole + (part > 0.0)
-    if not count:
-        return replace(system, A=early, B=start, step=step)
-    found = _add_registers(system, early @ late, early @ before, start, held=held, direct=direct, count=count, between=part > 0.0)
-    return replace(found, step=step)
+    (size, width), seen = system.B.shape, whole + (part > 0.0)
+    count = whole + 1 if np.any(system.D[:early]) else seen
+    entries, direct = np.zeros((size, count + 1, width)), np.zeros((len(system.D), count + 1, width))  # of u[k], u[k-1], ...
+    entries[:, whole] = start
+    if part > 0.0:
+        entries[:, whole + 1] = after @ before
+    direct[early:, seen], direct[:early, count] = system.D[early:], system.D[:early]
+    entries, direct = (each.reshape(len(each), (count + 1) * width) for each in (entries, direct))
+    shift = np.hstack([np.zeros((count * width, size)), np.eye(count * width, k=-width)])
+    return replace(
+        system,
+        A=np.vstack([np.hstack([after @ late, entries[:, width:]]), shift]),
+        B=np.vstack([entries[:, :width], np.eye(count * width, width)]),
+        C=np.hstack([system.C, direct[:, width:]]),
+        D=direct[:, :width],
+        step=step,
+    )
 
 
 def first_order_hold(system: System, step: float) -> System:
@@ -52,6 +62,7 @@ def first_order_hold(system: System, step: float) -> System:
     motion relative to it to (omega_0 T)^2/12, omega_0 the resonance (1e-3 for a tenth of a radian a sample). Raises `DesignError` for a
     system that is sampled already, and for times that cannot be.
 
+    >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
     >>> found = first_order_hold(integrator, 0.1)
@@ -59,14 +70,8 @@ def first_order_hold(system: System, step: float) -> System:
     ([[0.1]], [[0.05]])
     """
     require(_findings(system, step, 0.0))
-    size, width = system.B.shape
-    joined = np.zeros((size + 2 * width, size + 2 * width))
-    joined[:size, :size], joined[:size, size : size + width] = system.A * step, system.B * step
-    joined[size : size + width, size + width :] = np.eye(width)
-    moved = scipy.linalg.expm(joined)
-    whole, early, late = moved[:size, :size], moved[:size, size : size + width], moved[:size, size + width :]
-    entry = early - late + whole @ late
-    return replace(system, A=whole, B=entry, D=system.D + system.C @ late, step=step)
+    A, B, C, D, _ = scipy.signal.cont2discrete((system.A, system.B, system.C, system.D), step, "foh")
+    return replace(system, A=A, B=B, C=C, D=D, step=step)
 
 
 def split_delay(samples: float) -> tuple[int, float]:
@@ -79,34 +84,8 @@ def split_delay(samples: float) -> tuple[int, float]:
 
 def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
     """e^{At} and int_0^t e^{As} ds B."""
-    size, width = system.B.shape
-    joined = np.zeros((size + width, size + width))
-    joined[:size, :size], joined[:size, size:] = system.A, system.B
-    result = scipy.linalg.expm(joined * time)
-    return result[:size, :size], result[:size, size:]
-
-
-def _add_registers(
-    system: System, whole: Array, older: Array, newer: Array, *, held: Array, direct: Array, count: int, between: bool
-) -> System:
-    """The states, then the inputs of the last `count` samples, newest first."""
-    size, width = system.B.shape
-    registers = count * width
-    A = np.zeros((size + registers, size + registers))
-    B = np.zeros((size + registers, width))
-    C = np.hstack([system.C, np.zeros((len(system.C), registers))])
-    A[:size, :size] = whole
-    slots = [slice(size + number * width, size + (number + 1) * width) for number in range(count)]
-    B[slots[0]] = np.eye(width)
-    for earlier, later in pairwise(slots):
-        A[later, earlier] = np.eye(width)
-    A[:size, slots[-1]] += older if between else newer
-    C[:, slots[-1]] += held if between else direct
-    if between and count > 1:
-        A[:size, slots[-2]] += newer
-    elif between:
-        B[:size] += newer
-    return System(A, B, C, np.zeros_like(system.D), system.inputs, system.outputs)
+    A, B, *_ = scipy.signal.cont2discrete((system.A, system.B, system.C, system.D), time)
+    return A, B
 
 
 def bilinear(system: System, step: float, prewarp: float | None = None) -> System:
@@ -115,6 +94,7 @@ def bilinear(system: System, step: float, prewarp: float | None = None) -> Syste
     With `prewarp` f [Hz], c = 2 pi f / tan(pi f T): the response at f is kept exactly. Poles in the left half plane stay stable. Raises
     `DesignError` for a system that is sampled already, and for `prewarp` above half the sampling rate.
 
+    >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("e", "m"),), (Channel("u", "m"),)
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
     >>> found = bilinear(integrator, 0.1)
@@ -136,17 +116,6 @@ def bilinear(system: System, step: float, prewarp: float | None = None) -> Syste
         D=system.D + system.C @ inverse @ system.B,
         step=step,
     )
-
-
-def registers(channels: tuple[Channel, ...], outputs: tuple[Channel, ...], samples: int, step: float) -> System:
-    """y[k] = u[k - samples]: values passed on whole samples late.
-
-    >>> found = registers((Channel("u", "m"),), (Channel("y", "m"),), 2, 0.1)
-    >>> np.abs(found.transfer(np.array([1.0, 3.0]))).ravel().round(12).tolist(), len(found.A)
-    ([1.0, 1.0], 2)
-    """
-    none = System(np.zeros((0, 0)), np.zeros((0, len(channels))), np.zeros((len(outputs), 0)), np.eye(len(channels)), channels, outputs)
-    return discretise(none, step, samples * step)
 
 
 def _findings(system: System, step: float, delay: float) -> list[Finding]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated
@@ -19,6 +19,9 @@ from flexstage.models.linear.model import Channel
 from flexstage.models.linear.state_space import StateSpace
 
 _SINGULAR = 1e-12
+_CHUNK = 2_000_000
+_FEW = 12
+"""Points that are solved one by one: the rows of a triangle cost more than these, if each is a step of its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,19 +68,55 @@ class System(CheckedFields):
             return -np.inf
         return float(np.max(np.real(poles)) if self.step is None else np.log(max(np.max(np.abs(poles)), 1e-300)) / self.step)
 
+    @cached_property
+    def schur_form(self) -> tuple[Array, Array, Array]:
+        """Triangle T, Q^H B and C Q of the complex Schur form A = Q T Q^H, balanced."""
+        if not np.any(np.tril(self.A, -1)):  # laws of one loop are triangles as they are
+            return self.A.astype(complex), self.B.astype(complex), self.C.astype(complex)
+        balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
+        triangle, vectors = scipy.linalg.schur(balanced.astype(complex), output="complex")[:2]
+        return triangle, vectors.conj().T @ (self.B / scale[:, None]), (self.C * scale) @ vectors
+
+    def _points(self, frequencies: Array) -> Array:
+        turning = 2j * np.pi * np.asarray(frequencies, dtype=float)
+        return turning if self.step is None else np.exp(turning * self.step)
+
     def transfer(self, frequencies: Array) -> Array:
-        """H = C (lambda I - A)^-1 B + D, complex (f, p, m), at `frequencies` (f,) in Hz; lambda = j omega, or e^{j omega T}.
+        """Frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) in Hz; lambda = j omega, or e^{j omega T}.
 
         States are balanced first: rates of modes are thousands of times their motions, and a solve would lose as many digits.
         """
-        turning = 2j * np.pi * np.asarray(frequencies, dtype=float)
-        points = turning if self.step is None else np.exp(turning * self.step)
-        if not len(self.A):
-            return np.broadcast_to(self.D.astype(complex), (len(points), *self.D.shape)).copy()
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
-        entry = (self.B / scale[:, None]).astype(complex)
+        entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)
         shifted = points[:, None, None] * np.eye(len(balanced)) - balanced
         return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
+
+    def sweep(self, frequencies: Array, columns: slice = slice(None)) -> Array:
+        """The same at many frequencies, of the inputs in `columns`; infinite frequencies give D (continuous systems only).
+
+        One Schur form, then back substitution: n^2 operations a point, whether or not A has all eigenvectors. Elements that are zero by
+        symmetry are rounding of the largest.
+        """
+        frequencies, direct = np.asarray(frequencies, dtype=float), self.D[:, columns]
+        points = self._points(np.where(np.isfinite(frequencies), frequencies, 0.0))
+        triangle, entry, exit_ = self.schur_form
+        entry = entry[:, columns]
+        size = max(1, _CHUNK // max(1, entry.size))
+        pieces = [_respond(triangle, entry, exit_, points[start : start + size]) for start in range(0, len(points), size)]
+        found = np.concatenate(pieces) + direct if pieces else np.zeros((0, *direct.shape), complex)
+        return np.where(np.isfinite(frequencies)[:, None, None], found, direct)
+
+
+def _respond(triangle: Array, entry: Array, exit_: Array, points: Array) -> Array:
+    """C (lambda - T)^-1 B at points (f,): a few one by one, many row by row."""
+    if len(points) <= _FEW and len(triangle):
+        return np.stack([exit_ @ scipy.linalg.blas.ztrsm(1.0, point * np.eye(len(triangle)) - triangle, entry) for point in points])
+    (size, width), shifted = entry.shape, points[:, None] - np.diag(triangle)
+    solved = np.zeros((size, len(points) * width), complex)
+    for row in range(size - 1, -1, -1):
+        above = triangle[row, row + 1 :] @ solved[row + 1 :]
+        solved[row] = ((entry[row] + above.reshape(len(points), width)) / shifted[:, row, None]).ravel()
+    return np.moveaxis((exit_ @ solved).reshape(len(exit_), len(points), width), 0, 1)
 
 
 def _findings(system: System) -> Iterable[Finding]:
@@ -171,6 +210,15 @@ def _indices(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[in
     return [known.index(name) for name in names]
 
 
+def reachable(system: System) -> System:
+    """The system without the states that no input reaches, by the pattern of its matrices."""
+    own, reached = np.any(system.B != 0.0, axis=1), np.zeros(0, bool)
+    while not np.array_equal(own, reached):
+        reached = own
+        own = own | np.any(system.A[:, own] != 0.0, axis=1)
+    return system if np.all(own) else replace(system, A=system.A[np.ix_(own, own)], B=system.B[own], C=system.C[:, own])
+
+
 Terms = Mapping[str, float]
 """A sum of named signals, each with its factor."""
 
@@ -212,26 +260,11 @@ def _append(parts: tuple[System, ...]) -> System:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
         require([Finding("systems", f"their steps differ: {shown}", "Sample them alike")])
     return System(
-        *(side_by_side([getattr(part, name) for part in parts]) for name in "ABCD"),
+        *(scipy.linalg.block_diag(*(getattr(part, name) for part in parts)) for name in "ABCD"),
         inputs=tuple(channel for part in parts for channel in part.inputs),
         outputs=tuple(channel for part in parts for channel in part.outputs),
         step=parts[0].step,
     )
-
-
-def side_by_side(blocks: Sequence[Array]) -> Array:
-    """The block-diagonal matrix of some blocks, of which each may lack rows or columns.
-
-    >>> side_by_side([np.ones((1, 2)), np.zeros((0, 1)), 3.0 * np.ones((1, 0))]).tolist()
-    [[1.0, 1.0, 0.0], [0.0, 0.0, 0.0]]
-    """
-    found = np.zeros((sum(len(each) for each in blocks), sum(each.shape[1] for each in blocks)))
-    row = column = 0
-    for each in blocks:
-        below, right = row + len(each), column + each.shape[1]
-        found[row:below, column:right] = each
-        row, column = below, right
-    return found
 
 
 def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Channel, ...]) -> Iterable[Finding]:

@@ -1,21 +1,19 @@
-"""What every trajectory is: poses over time at a stated point, and how fast they change; poses as a loop's reference."""
+"""What every trajectory is: poses over time; poses as a loop's reference."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, refuse, require, suggest_nearest
-from flexstage.base.labelled import Matrix
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.mechanism.mechanism import PLATFORM
 
 
 class Trajectory(Protocol):
-    """Poses over time: `at(times)` in m and rad, of the named `point`, in the stage's axes and counted from where the stage rests.
+    """Poses over time: `at(times)` in m and rad, of the platform, in the stage's axes and counted from where the stage rests.
 
     A trajectory rests at nought before it starts. `duration` is when the last motion ends [s].
     """
@@ -23,11 +21,6 @@ class Trajectory(Protocol):
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Names of the coordinates that move, of x, y, z, rx, ry, rz."""
-        ...
-
-    @property
-    def point(self) -> str:
-        """The point of the platform whose pose is meant."""
         ...
 
     @property
@@ -40,36 +33,29 @@ class Trajectory(Protocol):
         ...
 
 
-@check_arguments
-def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array, motion: Matrix | None = None) -> Array:
-    """The poses (n, f) a loop of these coordinates is asked for at `times` (n,); coordinates that do not move are nought.
+def require_positive(where: str, numbers: Mapping[str, float | None]) -> None:
+    """Refuse what is stated and not above 0, or not finite."""
+    wrong = {name: value for name, value in numbers.items() if value is not None and not 0.0 < value < np.inf}
+    require(Finding(f"{where}{name}", f"it is {value:g}", "Give a positive number") for name, value in wrong.items())
 
-    `motion` (rows: the point's coordinates, columns: the loop's) is the point's pose per pose of the loop, xi = motion^-1 pose; absent
-    where the loop's coordinates are the point's own. Raises `DesignError` for coordinates the loop does not have, for a point without
-    `motion` and for one whose motions are not independent.
+
+@check_arguments
+def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array) -> Array:
+    """The reference poses (n, f) of a loop of these coordinates at `times` (n,); coordinates that do not move are 0.
+
+    Raises `DesignError` for coordinates the loop does not have.
 
     >>> from flexstage.control.trajectory.step import Step
     >>> up = Step({"z": 2e-6}, start=1.0)
     >>> reference(up, ("x", "z"), np.array([0.0, 1.0])).tolist()
     [[0.0, 0.0], [0.0, 2e-06]]
     """
-    known = tuple(coordinates) if motion is None else motion.rows
-    advice = "The loop's coordinates are " + ", ".join(known)
+    advice = "The loop's coordinates are " + ", ".join(coordinates)
     require(
-        Finding(f"trajectory: {name}", "the loop has no coordinate of this name", f"{suggest_nearest(name, known)}. {advice}")
+        Finding(f"trajectory: {name}", "the loop has no coordinate of this name", f"{suggest_nearest(name, coordinates)}. {advice}")
         for name in trajectory.coordinates
-        if name not in known
+        if name not in coordinates
     )
-    if motion is None and trajectory.point != PLATFORM:
-        raise refuse(f"trajectory at {trajectory.point}", "how this point moves with the platform is not given", "Give its motion")
-    poses = np.zeros((len(times), len(known)))
-    poses[:, [known.index(name) for name in trajectory.coordinates]] = trajectory.at(np.asarray(times, dtype=float))
-    return poses if motion is None else np.linalg.solve(_independent(motion, trajectory.point), poses.T).T
-
-
-def _independent(motion: Matrix, point: str) -> Array:
-    values = np.asarray(motion.values)
-    if values.shape[0] != values.shape[1] or np.linalg.cond(values) > 1e9:
-        what = f"its motions along {', '.join(motion.rows)} do not determine {', '.join(motion.columns)}"
-        raise refuse(f"trajectory at {point}", what, "Choose another point")
-    return values
+    poses = np.zeros((len(times), len(coordinates)))
+    poses[:, [coordinates.index(name) for name in trajectory.coordinates]] = trajectory.at(np.asarray(times, dtype=float))
+    return poses

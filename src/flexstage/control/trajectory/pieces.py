@@ -6,16 +6,20 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Polynomials sum_i `coefficients`[k, i] (t - `knots`[k])^i between knots (k + 1,) [s], coefficients (k, 6, c); at rest outside."""
+    """A piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot.
 
-    knots: Array
+    `coefficients` (k, m, c) have the highest power first, each from its own knot; `knots` (m + 1,).
+    """
+
     coefficients: Array
+    knots: Array
 
     @property
     def duration(self) -> float:
@@ -24,19 +28,8 @@ class Pieces:
 
     def at(self, times: Array, order: int = 0) -> Array:
         """Values (n, c), or those of the derivative of an `order`."""
-        times = np.clip(np.asarray(times, dtype=float), self.knots[0], self.knots[-1])
-        piece = np.clip(np.searchsorted(self.knots, times, side="right") - 1, 0, len(self.coefficients) - 1)
-        return _polynomial(self.coefficients[piece], times - self.knots[piece], order)
-
-
-def _polynomial(coefficients: Array, times: Array, order: int) -> Array:
-    """Horner's rule on coefficients (n, 6, c) at times (n,)."""
-    powers = np.arange(6.0)
-    factors = np.prod([np.maximum(powers - each, 0.0) for each in range(order)], axis=0) * np.ones(6)
-    total = np.zeros((len(coefficients), coefficients.shape[2]))
-    for power in range(5, order - 1, -1):
-        total = total * times[:, None] + factors[power] * coefficients[:, power]
-    return total
+        whole = scipy.interpolate.PPoly(self.coefficients, self.knots)
+        return np.asarray(whole(np.clip(times, self.knots[0], self.knots[-1]), order))
 
 
 def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
@@ -47,7 +40,8 @@ def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
     [0.5, 1.0, 1.0]
     """
     kept = [(time, coefficients) for time, coefficients in parts if time > 0.0]
-    return Pieces(np.concatenate([[0.0], np.cumsum([time for time, _ in kept])]), np.array([each for _, each in kept]))
+    knots = np.concatenate([[0.0], np.cumsum([time for time, _ in kept])])
+    return Pieces(np.stack([each[::-1] for _, each in kept], axis=1), knots)
 
 
 def rest(position: Array) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.finding import Finding, require
+from flexstage.control.trajectory.path import require_positive
 from flexstage.control.trajectory.pieces import Pieces, join
 
 
@@ -31,12 +31,10 @@ def profile(distance: float, limits: Limits) -> Pieces:
     >>> move.duration, move.at(np.array([0.5, 1.0])).ravel().tolist()
     (1.0, [0.5, 1.0])
     """
-    require(_findings(limits))
+    require_positive("limits: ", vars(limits))
     jerk = limits.jerk
     short = min(limits.acceleration / jerk, (limits.speed / jerk) ** 0.5, (0.5 * distance / jerk) ** (1.0 / 3.0))
     top = jerk * short
-    if top == 0.0:
-        return Pieces(np.array([0.0, 0.0]), np.zeros((1, 6, 1)))
     for_distance = 0.5 * (np.sqrt(short**2 + 4.0 * distance / top) - 3.0 * short)
     even = max(0.0, min(limits.speed / top - short, for_distance))
     speed = top * (short + even)
@@ -56,12 +54,3 @@ def _integrate(times: np.ndarray, jerks: np.ndarray, distance: float) -> Pieces:
         acceleration += time * jerk
     scaled = [(time, coefficients * (distance / position)) for time, coefficients in parts]
     return join(scaled)
-
-
-def _findings(limits: Limits) -> list[Finding]:
-    named = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk}
-    return [
-        Finding(f"limits: {name}", f"it is {value:g}", "Give a positive number")
-        for name, value in named.items()
-        if not 0.0 < value < np.inf
-    ]

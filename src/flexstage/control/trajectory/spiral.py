@@ -8,65 +8,46 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
+from flexstage.control.trajectory.path import require_positive
 from flexstage.control.trajectory.pieces import Pieces, join
-from flexstage.mechanism.mechanism import PLATFORM
-
-
-@dataclass(frozen=True)
-class EvenSpeed(CheckedFields):
-    """The same `speed` [m/s] everywhere on the path."""
-
-    speed: float
-
-
-@dataclass(frozen=True)
-class EvenTurns(CheckedFields):
-    """The same number of `turns` a second [1/s] everywhere."""
-
-    turns: float
 
 
 @dataclass(frozen=True, eq=False)
 class Spiral(CheckedFields):
-    """r = b theta from nought to a `radius` [m], `pitch` = 2 pi b between turns [m], passed at a `pace`; there it stays.
+    """r = b theta from 0 to a `radius` [m], `pitch` = 2 pi b between turns [m], passed at an even `speed` [m/s]; there it stays.
 
-    `ramp` [s] is how long speed (or the rate of turns) rises from nought, evenly, and falls at the end. The path's length is
-    s = b/2 (theta (1 + theta^2)^(1/2) + arsinh theta); for even speed theta follows from it by Newton's method, to rounding.
+    `ramp` [s] is how long the speed rises from 0, evenly, and falls at the end. The path's length is
+    s = b/2 (theta (1 + theta^2)^(1/2) + arsinh theta); theta follows from it by Newton's method, to rounding.
 
-    >>> spiral = Spiral(radius=10e-6, pitch=1e-6, pace=EvenTurns(10.0))
-    >>> round(spiral.duration, 12), spiral.at(np.array([0.05, 9.0])).round(12).tolist()
-    (1.0, [[-5e-07, 0.0], [1e-05, 0.0]])
+    >>> spiral = Spiral(radius=10e-6, pitch=1e-6, speed=1e-3)
+    >>> np.hypot(*spiral.at(np.array([9.0])).T).round(12).tolist()
+    [1e-05]
     """
 
     radius: float
     pitch: float
-    pace: EvenSpeed | EvenTurns
+    speed: float
     ramp: float = 0.0
-    start: float = 0.0
     coordinates: tuple[str, str] = ("x", "y")
-    point: str = PLATFORM
 
     def __post_init__(self) -> None:
         super().__post_init__()
         """Refuse numbers that make no spiral, and ramps that it is too short for."""
-        named = {"radius": self.radius, "pitch": self.pitch, "pace": self._pace}
-        wrong = {name: value for name, value in named.items() if not 0.0 < value < np.inf}
-        require(Finding(f"spiral: {name}", f"it is {value:g}", "Give a positive number") for name, value in wrong.items())
-        if not 0.0 <= self.ramp <= self._whole / self._pace:
-            what = f"{self.ramp:g} s, where the spiral takes {self._whole / self._pace:g} s at its full pace"
-            require([Finding("spiral: ramp", what, "Shorten the ramp, or slow down")])
+        require_positive("spiral: ", {"radius": self.radius, "pitch": self.pitch, "speed": self.speed})
+        if not 0.0 <= self.ramp <= self._whole / self.speed:
+            what = f"{self.ramp:g} s, where the spiral takes {self._whole / self.speed:g} s at its full speed"
+            raise refuse("spiral: ramp", what, "Shorten the ramp, or slow down")
 
     @property
     def duration(self) -> float:
         """When it has reached its radius [s]."""
-        return self.start + self._progress.duration
+        return self._progress.duration
 
     def at(self, times: Array) -> Array:
         """Poses (n, 2) at `times` (n,) [s]."""
-        passed = self._progress.at(np.asarray(times, dtype=float) - self.start)[:, 0]
-        angle = _angle(passed / self._growth) if isinstance(self.pace, EvenSpeed) else passed
+        angle = _angle(self._progress.at(np.asarray(times, dtype=float))[:, 0] / self._growth)
         return self._growth * angle[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
     @property
@@ -75,23 +56,14 @@ class Spiral(CheckedFields):
         return self.pitch / (2.0 * np.pi)
 
     @property
-    def _last(self) -> float:
-        return self.radius / self._growth
-
-    @property
-    def _pace(self) -> float:
-        """Full pace, of what `_whole` counts."""
-        return self.pace.speed if isinstance(self.pace, EvenSpeed) else 2.0 * np.pi * self.pace.turns
-
-    @property
     def _whole(self) -> float:
-        """Length of the path [m], or the last angle [rad]."""
-        return self._growth * float(_length(np.array(self._last))) if isinstance(self.pace, EvenSpeed) else self._last
+        """Length of the path [m]."""
+        return self._growth * float(_length(np.array(self.radius / self._growth)))
 
     @cached_property
     def _progress(self) -> Pieces:
-        """Length or angle passed over time: speeding up, even, slowing down."""
-        pace, ramp = self._pace, self.ramp
+        """Length passed over time: speeding up, even, slowing down."""
+        pace, ramp = self.speed, self.ramp
         even, first = self._whole / pace - ramp, 0.5 * pace * ramp
         bend = 0.5 * pace / ramp if ramp else 0.0
         parts = [(ramp, [0.0, 0.0, bend]), (even, [first, pace, 0.0]), (ramp, [first + pace * even, pace, -bend])]

@@ -11,7 +11,6 @@ from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 from flexstage.control.trajectory.pieces import Pieces
 from flexstage.control.trajectory.profile import Limits, profile
-from flexstage.mechanism.mechanism import PLATFORM
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +27,6 @@ class Step(CheckedFields):
     to: Mapping[str, float]
     start: float = 0.0
     limits: Limits | None = None
-    point: str = PLATFORM
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -44,14 +42,10 @@ class Step(CheckedFields):
         """Poses (n, c) at `times` (n,) [s]."""
         passed = np.asarray(times, dtype=float) - self.start
         share = 1.0 * (passed >= 0.0)[:, None] if self.limits is None else self._course(self.limits).at(passed) / self._length
-        return share * self._target
+        return share * np.array(list(self.to.values()), dtype=float)
 
     def _course(self, limits: Limits) -> Pieces:
         return profile(self._length, limits)
-
-    @property
-    def _target(self) -> Array:
-        return np.array(list(self.to.values()), dtype=float)
 
     @property
     def _length(self) -> float:

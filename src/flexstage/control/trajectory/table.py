@@ -1,4 +1,4 @@
-"""Trajectories from tables and records: poses at stated times."""
+"""Trajectories from tables: poses at stated times."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.experiment.records.record import Channel, Record
 from flexstage.experiment.records.unit import in_si, plain_unit
-from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 if TYPE_CHECKING:
@@ -38,7 +37,6 @@ class Table:
     times: Array
     values: Array
     coordinates: tuple[str, ...]
-    point: str = PLATFORM
     source: str = "trajectory"
 
     def __post_init__(self) -> None:
@@ -69,35 +67,7 @@ def _findings(table: Table) -> list[Finding]:
     return found
 
 
-def from_record(record: Record, point: str = PLATFORM) -> Table:
-    """The channels of a record that are named as coordinates, in their stated units, as a trajectory from the record's first time on.
-
-    Raises `DesignError` where there is none, and for units that are not those of a length or an angle.
-
-    >>> from flexstage.experiment.records.record import in_memory
-    >>> asked = from_record(in_memory([Channel("x", "um"), Channel("u1", "V")], 2.0, np.array([[0.0, 1.0], [3.0, 1.0]])))
-    >>> asked.coordinates, asked.at(np.array([0.25])).tolist()
-    (('x',), [[1.5e-06]])
-    """
-    where = record.where
-    named = tuple(name for name in record.names if name in COMPONENTS)
-    if not named:
-        raise refuse(where, f"no column is a coordinate: {', '.join(record.names)}", f"Name columns {', '.join(COMPONENTS)}")
-    chosen = in_si(record.select(named))
-    _require_units(where, record.select(named), chosen)
-    return Table(chosen.start + np.arange(chosen.length) / chosen.rate, chosen.values, named, point, where)
-
-
-def _require_units(where: str, stated: Record, chosen: Record) -> None:
-    wanted: dict[str, str] = dict(zip(COMPONENTS, TWIST_UNITS, strict=True))
-    require(
-        Finding(f"{where}: {after.name}", f'its unit is "{before.unit}"', f'Give it in a unit of {wanted[after.name]}, as "x [um]"')
-        for before, after in zip(stated.channels, chosen.channels, strict=True)
-        if after.unit != wanted[after.name]
-    )
-
-
-def from_file(path: str | os.PathLike[str], point: str = PLATFORM) -> Table:
+def from_file(path: str | os.PathLike[str]) -> Table:
     r"""A CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; its times may lie unevenly.
 
     Raises `DesignError` where the file cannot be read, has no column of times or none of coordinates.
@@ -116,13 +86,15 @@ def from_file(path: str | os.PathLike[str], point: str = PLATFORM) -> Table:
     if channels[0].name.lower() not in ("time", "t"):
         raise refuse(str(place), f'its first column is "{channels[0].name}"', 'Begin with times, as "time [s], x [um]"')
     whole = Record(channels, 1.0, samples, source=str(place))
-    poses = from_record(whole, point)
-    return Table(_seconds(whole), poses.values, poses.coordinates, point, str(place))
-
-
-def _seconds(record: Record) -> Array:
-    times = in_si(record.select(record.names[:1]))
-    unit = times.channels[0].unit
-    if unit != "s":
-        raise refuse(f"{record.source}: {record.names[0]}", f'its unit is "{unit}"', 'Give a unit of time, as "time [s]"')
-    return times.values[:, 0]
+    named = tuple(name for name in whole.names if name in COMPONENTS)
+    if not named:
+        raise refuse(str(place), f"no column is a coordinate: {', '.join(whole.names)}", f"Name columns {', '.join(COMPONENTS)}")
+    stated = whole.select((whole.names[0], *named))
+    chosen = in_si(stated)
+    wanted = dict(zip((whole.names[0], *COMPONENTS), ("s", *TWIST_UNITS), strict=True))
+    require(
+        Finding(f"{place}: {after.name}", f'its unit is "{before.unit}"', f'Give it in a unit of {wanted[after.name]}, as "x [um]"')
+        for before, after in zip(stated.channels, chosen.channels, strict=True)
+        if after.unit != wanted[after.name]
+    )
+    return Table(chosen.values[:, 0], chosen.values[:, 1:], named, str(place))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -17,12 +17,11 @@ from flexstage.control.controllers.family import Place
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, estimator, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.spec import Judgement, TuningSpec
-from flexstage.control.tuning.view import View
+from flexstage.control.tuning.view import View, first_alike
 
 _HIGH = 0.3
 """Gain of a loop at a mode from which on it gets a notch: below, |S| is at most 1/(1 - 0.3) = 1.43 there."""
@@ -88,7 +87,7 @@ class BandwidthTrial:
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.tuning.view import view
+    >>> from flexstage.control.tuning.view import first_alike, view
     >>> plant = integral_loop().plant
     >>> seen = view(plant, platform_loops(plant.coordinates), 0.0)
     >>> found = BandwidthTrial(seen, TuningSpec(PI_FAMILY), 20.0).best()
@@ -132,7 +131,7 @@ class BandwidthTrial:
         """The best law of each loop, and all loops together."""
         seen, found = self.seen, list[_Chosen]()
         for loop in range(len(options)):
-            alike = _first_alike(seen, options, loop)
+            alike = next(other for other in first_alike(seen.own, loop, _EQUAL) if options[other] == options[loop])
             one = found[alike] if alike < loop else self._choose(options[loop], loop, calm)
             if one is None:
                 return None
@@ -153,7 +152,7 @@ class BandwidthTrial:
             slack = -float(np.abs(each.response[0])) if calm else 0.0
             score = (max(calm, each.nominal), slack)
             if score < lowest and len(self.seen.offsets) > 1:
-                score = (max(score[0], each.everywhere), slack)
+                score = (max(score[0], self._everywhere(each.response, loop)), slack)
             if score < lowest:
                 best, lowest = each, score
         return best
@@ -169,12 +168,14 @@ class BandwidthTrial:
         place = Place(frequency, gain, float(seen.static[loop]), first)
         filtered = np.prod([response for _, response in filters], axis=0) if filters else 1.0
         possible = [(law, response * filtered) for law, response in self._responses(place) if response is not None]
-        scores = _scores(seen.frequencies, np.stack([whole for _, whole in possible]) * seen.own[0, :, loop], frequency) if possible else ()
         self._known[loop, notches] = tuple(
-            _Chosen(law, notches, whole, float(score), lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
-            for (law, whole), score in zip(possible, scores, strict=True)
+            _Chosen(law, notches, whole, _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency)) for law, whole in possible
         )
         return self._known[loop, notches]
+
+    def _everywhere(self, response: Array, loop: int) -> float:
+        """The score of a law wherever the modes may lie."""
+        return _score(self.seen.frequencies, response * self.seen.own[:, :, loop], self.frequency)
 
     def _responses(self, place: Place) -> list[tuple[Law, Array | None]]:
         """Laws with their responses (f,), None of those too fast for the samples; PI and PID at one frequency differ by a factor alone."""
@@ -206,40 +207,24 @@ def _choices(options: _Options) -> Iterator[_Options]:
             yield tuple(sets[min(number, len(sets) - 1) :][:1] for sets in options)
 
 
-def _first_alike(seen: View, options: _Options, loop: int) -> int:
-    """The first loop that is the same as this one: a symmetric stage has several."""
-    own = seen.own[:, :, loop]
-    size = np.max(np.abs(own))
-    for other in range(loop):
-        if options[other] == options[loop] and np.max(np.abs(seen.own[:, :, other] - own)) < _EQUAL * size:
-            return other
-    return loop
-
-
 @dataclass(frozen=True, eq=False)
 class _Chosen:
     """A loop's law and notches, and their `response` (f,) from error to command.
 
-    `nominal` is its score with the modes as they are modelled, `score` gives that wherever they may lie.
+    `nominal` is its score with the modes as they are modelled.
     """
 
     law: Law
     notches: tuple[Notch, ...]
     response: Array
     nominal: float
-    score: Callable[[Array], float]
-
-    @cached_property
-    def everywhere(self) -> float:
-        """The score wherever the modes may lie."""
-        return self.score(self.response)
 
 
 def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
     """It and its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
     if notch not in seen.kept:
         found = notch.system(seen.step)
-        seen.kept[notch] = found, resolvent(found).at(seen.frequencies)[:, 0, 0]
+        seen.kept[notch] = found, found.sweep(seen.frequencies)[:, 0, 0]
     return seen.kept[notch]
 
 
@@ -251,7 +236,7 @@ def _sampled_response(law: Law, seen: View) -> Array | None:
         return None
     entry = found.B[:, [0]] - found.B[:, [1]]
     alone = replace(found, B=entry, D=found.D[:, [0]] - found.D[:, [1]], inputs=found.inputs[:1])
-    return resolvent(alone).at(seen.frequencies)[:, 0, 0]
+    return alone.sweep(seen.frequencies)[:, 0, 0]
 
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
@@ -259,12 +244,6 @@ def _score(frequencies: Array, gains: Array, frequency: float) -> float:
     if _crosses_elsewhere(frequencies, np.abs(gains[0]), frequency):
         return 2.0 * _WRONG
     return _WRONG * bool(np.any(_encircles(frequencies, gains))) + float(1.0 / np.min(np.abs(1.0 + gains)))
-
-
-def _scores(frequencies: Array, gains: Array, frequency: float) -> Array:
-    """Peaks of S (l,) of single loops (l, f), far above any for those that encircle -1 or pass 1 elsewhere first."""
-    peaks = _WRONG * _encircles(frequencies, gains) + 1.0 / np.min(np.abs(1.0 + gains), axis=-1)
-    return np.where([_crosses_elsewhere(frequencies, each, frequency) for each in np.abs(gains)], 2.0 * _WRONG, peaks)
 
 
 def _crosses_elsewhere(frequencies: Array, gains: Array, frequency: float) -> bool:
@@ -318,7 +297,7 @@ def driven_gains(seen: View, frequency: float) -> Array:
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.tuning.view import view
+    >>> from flexstage.control.tuning.view import first_alike, view
     >>> plant = integral_loop().plant
     >>> driven_gains(view(plant, platform_loops(plant.coordinates), 0.0), 1.0).round(2).tolist()
     [0.99]
@@ -347,7 +326,7 @@ class _Designer:
     spec: TuningSpec
     expected: Disturbances
     observer: Array
-    responses: Resolvent
+    estimator: System
 
     @cached_property
     def estimates(self) -> Array:
@@ -356,7 +335,7 @@ class _Designer:
 
     def estimates_at(self, frequencies: Array) -> Array:
         """The same (s, f, k + n) at other frequencies [Hz]."""
-        found, count = self.responses.at(frequencies), len(self.seen.loops.names)
+        found, count = self.estimator.sweep(frequencies), len(self.seen.loops.names)
         found[..., :count] = found[..., :count] @ np.linalg.inv(self.seen.loops.sense)
         return np.ascontiguousarray(np.moveaxis(found, 0, 1))
 
@@ -374,7 +353,7 @@ def _designer(seen: View, spec: TuningSpec, trust: float) -> _Designer:
     key = (looser.strokes, *looser.gauges.items())
     if key not in seen.kept:
         observer = observer_gain(model, coordinates, looser)
-        seen.kept[key] = _Designer(seen, spec, looser, observer, resolvent(estimator(model, observer)))
+        seen.kept[key] = _Designer(seen, spec, looser, observer, estimator(model, observer))
     return seen.kept[key]
 
 
@@ -388,7 +367,7 @@ def _strokes(seen: View, control: LQG, estimates: Array, frequencies: Array) -> 
     felt = (control.regulator @ estimates.reshape(states, -1).view(float)).view(complex).reshape(-1, points, width)
     fed = np.moveaxis(felt, 1, 0)
     turning = 2j * np.pi * frequencies
-    sums = (step := seen.step or 0.0) / np.expm1(turning * step)
+    sums = seen.step / np.expm1(turning * seen.step)
     entered = fed[..., :count] + (control.integral @ np.linalg.inv(seen.loops.sense)) * sums[:, None, None]
     return np.linalg.solve(np.eye(len(felt)) + fed[..., count:], entered)
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.systems.resolvent import resolvent
-from flexstage.control.systems.system import System
+from flexstage.control.systems.closed import pose_controller
+from flexstage.control.systems.system import System, connect
 from flexstage.control.tuning.spec import Judgement
 from flexstage.control.tuning.view import View
-from flexstage.models.linear.model import Channel
 
 _ROUNDING = 1e-9
 _COARSE = 8
@@ -86,16 +84,8 @@ def open_gains(seen: View, control: System) -> Array:
     >>> open_gains(view(closed.plant, platform_loops(closed.plant.coordinates), 0.0), closed.controller).shape[2:]
     (1, 1)
     """
-    names = seen.loops.coordinates.names
-    selector = np.zeros((len(control.inputs), len(names)))
-    for kind, sign in (("error", 1.0), ("pose", -1.0)):
-        for number, name in enumerate(names):
-            if f"{kind}.{name}" in control.input_names:
-                selector[control.input_names.index(f"{kind}.{name}"), number] = sign
-    entry = selector @ np.linalg.inv(seen.loops.sense)
-    inputs = tuple(Channel(name, "m") for name in seen.loops.names)
-    total = replace(control, B=control.B @ entry, D=control.D @ entry, inputs=inputs)
-    return seen.responses @ resolvent(total).at(seen.frequencies)
+    whole = pose_controller(control, seen.loops.coordinates, seen.loops.sense)
+    return seen.responses @ whole.sweep(seen.frequencies, slice(len(seen.loops.names)))
 
 
 def closed_growth(plant: System, control: System) -> float:
@@ -107,16 +97,9 @@ def closed_growth(plant: System, control: System) -> float:
     >>> abs(closed_growth(pose_plant(closed.plant), closed.controller) / closed.system.growth - 1.0) < 1e-6
     True
     """
-    rows = dict(zip(plant.output_names, np.eye(len(plant.outputs)), strict=True))
-    sources = {**rows, **{name.replace("pose.", "error."): -row for name, row in rows.items()}}
-    back = np.array([sources.get(name, np.zeros(len(plant.outputs))) for name in control.input_names])
-    given = [control.output_names.index(name) for name in plant.input_names]
-    entered, direct, out = control.B @ back, control.D[given] @ back, control.C[given]
-    solve = np.linalg.inv(np.eye(len(given)) - direct @ plant.D)
-    C, D = solve @ direct @ plant.C, solve @ out
-    A = np.block([[plant.A + plant.B @ C, plant.B @ D], [entered @ (plant.C + plant.D @ C), control.A + entered @ plant.D @ D]])
-    none = System(A, np.zeros((len(A), 0)), np.zeros((0, len(A))), np.zeros((0, 0)), (), (), plant.step)
-    return none.growth
+    errors = {f"error.{name.partition('.')[2]}": {name: -1.0} for name in plant.output_names}
+    links = {name: errors.get(name, {}) for name in control.input_names if name not in plant.output_names}
+    return connect([plant, control], links, (), ()).growth
 
 
 def highest_gain(matrices: Array) -> tuple[float, int]:

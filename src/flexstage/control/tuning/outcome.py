@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.closed import pose_controller
 from flexstage.control.systems.system import System
 from flexstage.control.tuning.judge import first_rise, highest_gain
 from flexstage.control.tuning.search import Field
-from flexstage.control.tuning.view import View
-from flexstage.models.linear.model import Channel
 
 _BAND = 0.02
 """Within which steps are settled."""
@@ -51,12 +49,11 @@ def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
     (True, 0.0, True)
     """
     count, coordinates = len(within.seen.loops.names), within.seen.loops.coordinates
-    responses, eye = resolvent(_entered(within.seen, control)), np.eye(count)
-    back = replace(responses, system=_first_inputs(responses.system, count), entry=responses.entry[:, :count])
-    every = gain * back.at(within.frequencies.ravel()).reshape(*within.frequencies.shape, -1, count)
+    entered, eye = pose_controller(control, coordinates, within.seen.loops.sense), np.eye(count)
+    every = gain * entered.sweep(within.frequencies.ravel(), slice(count)).reshape(*within.frequencies.shape, -1, count)
     opened = within.strokes @ every
     left = np.linalg.inv(eye + opened)
-    slow = gain * responses.at(within.lines[1:])
+    slow = gain * entered.sweep(within.lines[1:])
     following = np.linalg.solve(eye + within.slow_strokes @ slow[..., :count], within.slow_strokes @ slow[..., count:])
     steps, interval = _steps(np.einsum("whkk->whk", following)), 0.5 / float(within.lines[-1])
     lengths = coordinates.scale[:, None] * np.linalg.inv(within.seen.loops.sense)
@@ -73,24 +70,6 @@ def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
         overshoot=np.max(steps, axis=(0, 1)) - 1.0,
         delay_margin=np.array([_delay_margin(1.0 / own[0, :, k] - 1.0, within.frequencies[0]) for k in range(count)]),
     )
-
-
-def _first_inputs(system: System, count: int) -> System:
-    return replace(system, B=system.B[:, :count], D=system.D[:, :count], inputs=system.inputs[:count])
-
-
-def _entered(seen: View, control: System) -> System:
-    """The controller from loops' errors: pose and error together, as what comes back; and the error alone, as references enter."""
-    names, count = seen.loops.coordinates.names, len(seen.loops.names)
-    error, back = np.zeros((len(control.inputs), len(names))), np.zeros((len(control.inputs), len(names)))
-    for number, name in enumerate(names):
-        for kind, sign, into in (("error", 1.0, error), ("pose", -1.0, back), ("reference", 1.0, error)):
-            if f"{kind}.{name}" in control.input_names:
-                into[control.input_names.index(f"{kind}.{name}"), number] = sign
-    back[[name.startswith("error.") for name in control.input_names]] = error[[name.startswith("error.") for name in control.input_names]]
-    entry = np.hstack([back, error]) @ np.kron(np.eye(2), np.linalg.inv(seen.loops.sense))
-    inputs = tuple(Channel(f"{kind}{number}", "m") for kind in ("back", "to") for number in range(count))
-    return replace(control, B=control.B @ entry, D=control.D @ entry, inputs=inputs)
 
 
 def _steps(following: Array) -> Array:

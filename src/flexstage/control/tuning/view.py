@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -12,15 +13,12 @@ from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plant_models.plants import Plant
-from flexstage.control.systems.resolvent import Resolvent, resolvent
 from flexstage.control.systems.system import System
 
 _PLAIN, _PER_DECADE = 400, 60
 """Frequencies evenly in the logarithm, and how many a decade has at least: 2 to 4 % apart."""
 _TURNED, _OF_RATE = 0.3, 0.4
 """Highest bandwidth: hold and delay take 0.3 of a turn there, 108 deg, more than laws make up for; at most this share of the rate."""
-_OF_HIGHEST = 0.25
-"""The same of a continuous loop, over the highest frequency that is looked at: 5 times the plant's last mode."""
 _LOWEST, _BELOW_FASTEST = 1e-3, 0.01
 """Lowest frequency over the first mode, and over the highest bandwidth at most; of a free body, whose mode is at 0 Hz, over both."""
 _AROUND = 21
@@ -50,9 +48,9 @@ class View:
     ratios: Array
 
     @property
-    def step(self) -> float | None:
+    def step(self) -> float:
         """Time between samples [s]; None for a continuous loop."""
-        return self.systems[0].step
+        return self.systems[0].step or np.nan
 
     @property
     def fastest(self) -> float:
@@ -68,13 +66,9 @@ class View:
         """The loops' own responses (k,) at one frequency [Hz]."""
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
-    @cached_property
-    def _resolvents(self) -> dict[float, Resolvent]:
-        return {offset: resolvent(system) for offset, system in zip(self.offsets, self.systems, strict=True)}
-
     def driven_at(self, offset: float, frequencies: Array) -> Array:
         """Responses (f, k, n) of the loops' poses to strokes at frequencies [Hz], with the modes by one of the offsets off."""
-        return self.loops.sense @ self._resolvents[offset].at(frequencies)
+        return self.loops.sense @ self.systems[self.offsets.index(offset)].sweep(frequencies)
 
     @cached_property
     def driven(self) -> Array:
@@ -111,36 +105,27 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     """
     if offsets is None:
         offsets = (0.0, -spread, spread) if spread else (0.0,)
-    systems = tuple(_scale_modes(plant, offset) for offset in offsets)
+    systems = tuple(pose_plant(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
-    responses = np.stack([loops.sense @ resolvent(system).at(frequencies) for system in systems])
+    responses = np.stack([loops.sense @ system.sweep(frequencies) for system in systems])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
 
 
+def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
+    """Loops (v, f, k) before this one with the same response, and the loop itself: a symmetric stage has several."""
+    largest = np.max(np.abs(own[..., loop]))
+    yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
+    yield loop
+
+
 def _fastest(plant: Plant) -> float:
-    step = plant.hardware.step
-    if step is None:
-        return _OF_HIGHEST * _highest(plant)
+    step = plant.hardware.step or np.nan
     return min(_TURNED / (plant.hardware.delay + 0.5 * step), _OF_RATE / step)
-
-
-def _highest(plant: Plant) -> float:
-    return 20.0 * float(plant.frequencies[-1]) if plant.hardware.rate is None else 0.5 * plant.hardware.rate
-
-
-def _scale_modes(plant: Plant, offset: float) -> System:
-    """The plant with all its modes by a relative offset higher; lags and delays go with them."""
-    given = plant.hardware
-    if given.rate is None:
-        found = pose_plant(plant)
-        return replace(found, A=found.A * (1.0 + offset), B=found.B * (1.0 + offset))
-    slower = replace(given, rate=given.rate / (1.0 + offset), delay=given.delay * (1.0 + offset))
-    return replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
 
 
 def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
     """Evenly in the logarithm, and densely around every mode wherever it may lie."""
-    highest, slow = _highest(plant), _BELOW_FASTEST * _fastest(plant)
+    highest, slow = 0.5 * (plant.hardware.rate or np.nan), _BELOW_FASTEST * _fastest(plant)
     lowest = min(slow, _LOWEST * float(plant.frequencies[0] or slow))
     plain = np.geomspace(lowest, highest, max(_PLAIN, int(_PER_DECADE * np.log10(highest / lowest))))
     around = np.tan(np.linspace(-1.5, 1.5, _AROUND))
@@ -175,7 +160,7 @@ def resonances(seen: View, loop: int) -> tuple[Resonance, ...]:
     gains = np.abs(seen.own[0, :, loop])
     found: list[Resonance] = []
     for frequency, ratio in zip(seen.modes, seen.ratios, strict=True):
-        if seen.step is not None and frequency >= 0.5 / seen.step:
+        if frequency >= 0.5 / seen.step:
             continue
         own, *sides = np.interp(frequency * (1.0 + np.array([0.0, -8.0, 8.0]) * ratio), seen.frequencies, gains)
         if own > _STANDS_OUT * max(sides) and not (found and frequency < found[-1].frequency * (1.0 + _SAME)):

@@ -48,14 +48,22 @@ def get(mechanism: Mechanism, address: str) -> Any:
     >>> get(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "parts.wire.length")
     0.03
     """
-    place = locate(mechanism, address)
-    value: Any = mechanism
+    return value_at(mechanism, locate(mechanism, address))
+
+
+def value_at(mechanism: Mechanism, place: Place) -> Any:
+    """Return the value at a place, overrides applied."""
+    return follow(_holder(mechanism, place), place.path)
+
+
+def _holder(mechanism: Mechanism, place: Place) -> Any:
+    """What the path of a place is followed in, overrides applied."""
     if place.misaligned:
-        value = misalignment_of(mechanism.overrides, place.owners[0])
-    elif place.owners:
-        link, part = _link_and_part(mechanism, place)
-        value = link if place.in_link else part
-    return follow(value, place.path)
+        return misalignment_of(mechanism.overrides, place.owners[0])
+    if not place.owners:
+        return mechanism
+    link, part = _link_and_part(mechanism, place)
+    return link if place.in_link else part
 
 
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
@@ -70,11 +78,13 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     0.04
     """
     place = locate(mechanism, address)
-    fitting = place.node.fit(freeze(value), address)
     changed, lost = mechanism, [place.address]
     for path in with_mirror(place.path):
         written = replace(place, path=path)
-        changed = _without_formulas(_write(changed, written, fitting), written.address)
+        try:
+            changed = _without_formulas(_write(changed, written, freeze(value)), written.address)
+        except DesignError as error:
+            raise DesignError(replace(finding, where=address) for finding in error.findings) from None
     if place.number:
         moved = dependents(changed, place.number)
         changed = reduce(_work_out, moved, changed)
@@ -194,7 +204,12 @@ def quantity_of(mechanism: Mechanism, address: str) -> Quantity:
     >>> quantity_of(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").shown
     'mm'
     """
-    quantity = locate(mechanism, address).node.measures
+    return quantity_at(locate(mechanism, address), address)
+
+
+def quantity_at(place: Place, address: str) -> Quantity:
+    """Return the quantity of what is at a place. Raises `DesignError` where that is no number."""
+    quantity = place.node.measures
     if quantity is None:
         raise refuse(address, "this is not a number", "Address one of its numbers")
     return quantity
@@ -234,7 +249,8 @@ def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
 
 def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
     if not place.owners:
-        return replace_member(mechanism, place.path, value)
+        return replace_member(mechanism, place.path, value)  # type: ignore[no-any-return]
+    value = follow(replace_member(_holder(mechanism, place), place.path, value), place.path)
     overrides = dict(mechanism.overrides)
     for key, path in _overrides(mechanism, place.owners[-1]):
         depth = len(path)

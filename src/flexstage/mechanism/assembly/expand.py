@@ -5,13 +5,14 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
-from typing import TypeAlias, cast
+from functools import cached_property
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
+from flexstage.base.session import SESSION
 from flexstage.mechanism.addresses.path import complete, has_member, replace_member
 from flexstage.mechanism.assembly.likeness import drawn_units, link_lineage
 from flexstage.mechanism.assembly.misalignment import MISALIGNED, misalign
@@ -36,10 +37,10 @@ from flexstage.mechanism.mechanism import (
     Mechanism,
     Probe,
     Stop,
-    every_body,
     every_link,
     posed,
 )
+from flexstage.mechanism.references import references
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, PlacedSolid, owner_of, pierce
 from flexstage.parts.compliance_matrix import Joint
@@ -216,6 +217,19 @@ def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
     return tuple(_reflect(_polar_frame(pattern, pattern.first + number * step), pattern.mirror) for number in range(count))
 
 
+def patterned(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any, Frame]]:
+    """Yield name, entry and frame of every copy that entries with patterns place.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [name for name, _, _ in patterned(double_triangle().gauges)][:3]
+    ['S1', 'S2', 'S3']
+    """
+    for key, item in entries.items():
+        names = copy_names(key)
+        for name, frame in zip(names, copy_frames(item.pattern, len(names)), strict=True):
+            yield name, item, frame
+
+
 def _upright(pose: Pose) -> Vector | None:
     """The direction of a pose's z axis; none is meant where the usual one, z, lies along x: then a gauge is roundly alike."""
     x, y, z = (np.max(np.abs(np.real(component))) for component in pose.direction)
@@ -249,7 +263,7 @@ def expand(mechanism: Mechanism) -> Assembly:
     """
     assembly = lay_out(mechanism)
     for body in assembly.bodies.values():
-        _ = [item.own.value for item in body.drawn], body.reference, body.mass  # what cannot be weighed is refused here
+        _ = [item.own for item in body.drawn], body.reference, body.mass  # what cannot be weighed is refused here
     return assembly
 
 
@@ -276,7 +290,7 @@ class Same:
         return isinstance(other, Same) and self.mechanism is other.mechanism
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _assembly(key: Same) -> Assembly:
     """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
@@ -298,10 +312,19 @@ def _assembly(key: Same) -> Assembly:
     require(_unknown_bodies(bodies, joined, {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}))
     require(_unknown_bodies(bodies, (), {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
     resting = lent.get(GROUND, ())
-    _ = [item.own.value for item in resting]  # nobody asks for their mass; what cannot be weighed is refused all the same
+    _ = [item.own for item in resting]  # nobody asks for their mass; what cannot be weighed is refused all the same
     ground = _placed_solids(resting)
     drives = _actuators(links, {copy for copy, _, _ in placed})
-    return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements, dict(_stops(mechanism)))
+    return Assembly(
+        bodies,
+        links,
+        _gauges(mechanism, links),
+        drives,
+        dict(_points(drawn)),
+        ground,
+        elements,
+        {name: place_stop(stop, frame.right_handed) for name, stop, frame in patterned(mechanism.stops)},
+    )
 
 
 def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -328,20 +351,11 @@ def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     >>> print(*unknown_names(Mechanism("", links={"strut": Link(("ground", "platform"), "wire")})))
     links.strut.part: there is no part "wire". There are none.
     """
-    parts, materials = mechanism.parts, mechanism.materials
-    named: list[tuple[str, str, str | None, Mapping[str, object]]] = []
-    for name, part in parts.items():
-        named += [(f"parts.{name}.material", "material", material_of(part), materials)]
-        named += [(f"parts.{name}.counter", "material", counter_of(part), materials)]
-    for where, body in every_body(mechanism):
-        named += [(f"{where}.solids.{name}.material", "material", solid.material, materials) for name, solid in body.solids.items()]
-    named += [(f"placements.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.placements.items()]
-    for name, probe in mechanism.gauges.items():
-        named += [] if isinstance(probe, GaugeSum) else [(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)]
-    named += [(f"{where}.part", "part", link.part, parts) for where, link in every_link(mechanism)]
-    for where, kind, wanted, known in named:
-        if wanted is not None and wanted not in known:
-            yield Finding(where, f'there is no {kind} "{wanted}"', suggest_nearest(wanted, known))
+    parts = mechanism.parts
+    for section in ("parts", "bodies", "links", "units", "placements", "gauges"):
+        for where, home, name in references(getattr(mechanism, section), section):
+            if name not in getattr(mechanism, home):
+                yield Finding(where, f'there is no {home.removesuffix("s")} "{name}"', suggest_nearest(name, getattr(mechanism, home)))
     for where, link in every_link(mechanism):
         yield from _port_findings(where, link, parts) if link.part in parts else ()
 
@@ -381,11 +395,17 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
     >>> [name for name, _, _ in copies(double_triangle())]
     ['B1', 'B2', 'B3', 'B4', 'B5', 'B6']
     """
-    for key, placement in mechanism.placements.items():
-        names = copy_names(key)
-        frames = copy_frames(placement.pattern, len(names))
-        for name, frame in zip(names, frames, strict=True):
-            yield name, placement.unit, misalign(frame, mechanism.overrides, name)
+    for name, placement, frame in patterned(mechanism.placements):
+        yield name, placement.unit, misalign(frame, mechanism.overrides, name)
+
+
+def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
+    """Return the unit's name by name of each placed copy.
+
+    >>> unit_of_copy(Mechanism(""))
+    {}
+    """
+    return {copy: placement.unit for key, placement in mechanism.placements.items() for copy in copy_names(key)}
 
 
 def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
@@ -395,8 +415,8 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
     >>> list(placed_bodies(double_triangle()))[:3]
     ['platform', 'B1/base', 'B1/tip']
     """
-    drawn = {name: unit.bodies for name, unit in drawn_units(mechanism).items()}
-    placed = [(copy, drawn.get(placement.unit, {})) for key, placement in mechanism.placements.items() for copy in copy_names(key)]
+    drawn = drawn_units(mechanism)
+    placed = [(copy, drawn[unit].bodies) for copy, unit in unit_of_copy(mechanism).items() if unit in drawn]
     return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
 
 
@@ -411,32 +431,24 @@ def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable
 
 
 @dataclass(frozen=True, eq=False)
-class _OwnMass:
-    """The mass of a body as it is drawn, weighed once for all its copies when it is first asked for."""
+class _DrawnBody:
+    """A body, drawn under the name `source`, in the frame of this copy; `aligned` is that frame as it is meant."""
 
+    name: str
     body: Body
     materials: Mapping[str, Material]
-    name: str
-
-    @cached_property
-    def value(self) -> MassProperties | None:
-        """Mass properties in the frame it is drawn in; `None` without any."""
-        return mass_properties(self.body, self.materials, self.name)
-
-
-@dataclass(frozen=True, eq=False)
-class _DrawnBody:
-    """A body and its own mass, seen from the frame it is drawn in; `frame` is that of this copy, `aligned` as it is meant."""
-
-    name: str
-    body: Body
-    own: _OwnMass
+    source: str
     frame: Frame
     aligned: Frame
 
+    @property
+    def own(self) -> MassProperties | None:
+        """Mass properties in the frame it is drawn in, known for all its copies; `None` without any."""
+        return mass_properties(self.body, self.materials, self.source)
+
     def mass(self) -> MassProperties | None:
         """The mass properties in the stage's frame."""
-        return None if self.own.value is None else within(self.own.value, self.frame)
+        return None if self.own is None else within(self.own, self.frame)
 
     def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
         """The outlines by address, in the stage's frame."""
@@ -460,18 +472,13 @@ class _DrawnLink:
 
 
 def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
+    materials, drawn = mechanism.materials, drawn_units(mechanism)
     for name, body in mechanism.bodies.items():
-        yield _DrawnBody(name, body, _OwnMass(body, mechanism.materials, name), identity(), identity())
-    drawn = drawn_units(mechanism)
-    units = {unit: drawn[unit].bodies for _, unit, _ in placed}
-    masses = {
-        unit: {name: _OwnMass(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
-        for unit, bodies in units.items()
-    }
+        yield _DrawnBody(name, body, materials, name, identity(), identity())
     meant = {copy: frame for copy, _, frame in copies(replace(mechanism, overrides=Table({})))} if mechanism.overrides else {}
     for copy, unit, frame in placed:
-        for name, body in units[unit].items():
-            yield _DrawnBody(f"{copy}/{name}", body, masses[unit][name], frame, meant.get(copy, frame))
+        for name, body in drawn[unit].bodies.items():
+            yield _DrawnBody(f"{copy}/{name}", body, materials, f"{unit}/{name}", frame, meant.get(copy, frame))
 
 
 def _by_owner(drawn: tuple[_DrawnBody, ...]) -> dict[str, list[_DrawnBody]]:
@@ -558,8 +565,8 @@ def _inner_bodies(
     for whole in links:
         if (composition := compositions.get(id(whole.part))) is not None:
             for name, body in composition.bodies.items():
-                own = _OwnMass(body, mechanism.materials, f"{whole.name}.{name}")
-                yield _DrawnBody(f"{whole.name}.{name}", body, own, whole.frame, whole.frame)
+                own = f"{whole.name}.{name}"
+                yield _DrawnBody(own, body, mechanism.materials, own, whole.frame, whole.frame)
 
 
 def _drawn_link(link: Link, *owners: str) -> _DrawnLink:
@@ -670,19 +677,11 @@ def _gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink]) -> dict[str, 
 
 
 def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: str, place: GaugePlace) -> Iterator[PlacedGauge]:
-    names = copy_names(key)
     if isinstance(place, Probe):
         gauge = mechanism.sensors[place.gauge]
-        for name, frame in zip(names, copy_frames(place.pattern, len(names)), strict=True):
+        for name, _, frame in patterned({key: place}):
             yield PlacedGauge(name, gauge, (sight(place, gauge, misalign(frame, mechanism.overrides, name).right_handed),))
     elif isinstance(place, LinkProbe):
         gauge = mechanism.sensors[place.gauge]
-        for name, link in zip(names, (links[each] for each in link_names(place.link)), strict=True):
+        for name, link in zip(copy_names(key), (links[each] for each in link_names(place.link)), strict=True):
             yield PlacedGauge(name, gauge, (sight_of_link(*link.joins, link.frame, link.part, gauge),))
-
-
-def _stops(mechanism: Mechanism) -> Iterator[tuple[str, PlacedStop]]:
-    for key, stop in mechanism.stops.items():
-        names = copy_names(key)
-        for name, frame in zip(names, copy_frames(stop.pattern, len(names)), strict=True):
-            yield name, place_stop(stop, frame.right_handed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from flexstage.base.finding import Finding, suggest_nearest
+from flexstage.base.finding import Finding
 from flexstage.base.number import Table
 from flexstage.mechanism.mechanism import Mechanism, Unit
 
@@ -55,17 +55,15 @@ def link_lineage(mechanism: Mechanism, unit: str, link: str) -> tuple[str, ...]:
 
 
 def likeness_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Units like one that is not there, or, by whatever way, like themselves.
+    """Units that are, by whatever way, like themselves.
 
-    >>> print(*likeness_findings(Mechanism("", units={"outer": Unit({}, {}, like="iner"), "inner": Unit({}, {})})))
-    units.outer.like: there is no unit "iner". The nearest name is inner.
+    >>> print(*likeness_findings(Mechanism("", units={"inner": Unit({}, {}, like="inner")})))
+    units.inner.like: it is like itself. Draw one of them by itself.
     """
     for name, unit in mechanism.units.items():
         if unit.like is None:
             continue
         line = ancestry(mechanism, name)
-        if unit.like not in mechanism.units:
-            yield Finding(f"units.{name}.like", f'there is no unit "{unit.like}"', suggest_nearest(unit.like, mechanism.units))
-        elif mechanism.units[line[-1]].like == name:
+        if mechanism.units[line[-1]].like == name:
             what = "it is like itself" if len(line) == 1 else f"it is like itself: {', '.join(line)} are like one another in a circle"
             yield Finding(f"units.{name}.like", what, "Draw one of them by itself")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any, cast
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,33 +13,29 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
 from flexstage.base.storage.digest import Description, digest
 from flexstage.mechanism.addresses.locate import canonical
-from flexstage.mechanism.assembly.expand import copy_frames, placed_bodies
+from flexstage.mechanism.assembly.expand import copy_frames, patterned, placed_bodies
 from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.assembly.pattern import Normal, Pose, copy_names
 from flexstage.mechanism.assembly.sight import link_names
 from flexstage.mechanism.mechanism import (
     EVERYWHERE,
     GROUND,
+    NAMED,
     NOT_GROWING,
     PLATFORM,
     GaugePlace,
-    Link,
     LinkProbe,
     Mechanism,
-    Placement,
     Probe,
-    Stop,
-    Unit,
 )
-from flexstage.parts.body import Body, Inertia, Solid, owner_of
+from flexstage.mechanism.references import BODIES, SECTIONS, renamed
+from flexstage.parts.body import Body, Inertia, owner_of
 from flexstage.parts.mass import tensor
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part, Restricted
 from flexstage.spatial.frame import Frame, identity, reflection
 
 STAGES = "stages"
 """The table of a design file that says what stages stand on this one."""
-_SECTIONS = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,29 +69,22 @@ def mount(
     brings = PLATFORM not in stage.bodies if platform is None else platform
     rename = _Names(name, on, frozenset(drawn for unit in drawn_units(carried).values() for drawn in unit.bodies), brings)
     frame = copy_frames(pose, 1)[0]
-    own: dict[str, Mapping[str, Any]] = {
-        "materials": {f"{name}/{key}": item.turned(frame.rotation) for key, item in carried.materials.items()},
-        "parts": {f"{name}/{key}": rename.part(part) for key, part in carried.parts.items()},
-        "bodies": {rename.body(key): _moved_body(rename.solids(body), frame) for key, body in carried.bodies.items()},
-        "links": {f"{name}/{key}": _moved_link(rename.link(link), frame) for key, link in carried.links.items()},
-        "units": {f"{name}/{key}": rename.unit(unit) for key, unit in carried.units.items()},
-        "placements": dict(_copies(carried, name, frame)),
-        "sensors": _under(name, carried.sensors),
-        "gauges": dict(_gauges(carried, rename, frame)),
-        "stops": dict(_stops(carried, rename, frame)),
-        "payloads": {
-            f"{name}/{key}": replace(item, body=rename.body(item.body), at=_point(frame, item.at), inertia=_turned(item.inertia, frame))
-            for key, item in carried.payloads.items()
-        },
-        "forces": {
-            f"{name}/{key}": replace(item, body=rename.body(item.body), at=_point(frame, item.at), force=_direction(frame, item.force))
-            for key, item in carried.forces.items()
-        },
-        "temperatures": {
-            rename.body(key): value for key, value in _temperatures(carried).items() if key != GROUND or _is_on_ground(stage, on)
-        },
+    temperatures = {key: each for key, each in _temperatures(carried).items() if key != GROUND or _is_on_ground(stage, on)}
+    moved: dict[str, Mapping[str, Any]] = {
+        "materials": {key: item.turned(frame.rotation) for key, item in carried.materials.items()},
+        "parts": carried.parts,
+        "bodies": {key: _moved_body(body, frame) for key, body in carried.bodies.items()},
+        "links": {key: _moved(link, frame) for key, link in carried.links.items()},
+        "units": carried.units,
+        "placements": dict(_placed(carried.placements, frame)),
+        "sensors": carried.sensors,
+        "gauges": dict(_gauges(carried, name, frame)),
+        "stops": dict(_placed(carried.stops, frame)),
+        "payloads": {key: replace(_moved(item, frame), inertia=_turned(item.inertia, frame)) for key, item in carried.payloads.items()},
+        "forces": {key: _moved(item, frame) for key, item in carried.forces.items()},
     }
-    own["temperatures"] = {**own["temperatures"], **stage.temperatures}
+    own = {section: {rename.key(section, key): rename.inside(section, item) for key, item in moved[section].items()} for section in moved}
+    own["temperatures"] = {**{rename.body(key): each for key, each in temperatures.items()}, **stage.temperatures}
     merged = {section: Table({**getattr(stage, section), **entries}) for section, entries in own.items()}
     overrides = {_override(name, key): value for key, value in carried.overrides.items()}
     tags, sources = _provenance(stage, rename, carried)
@@ -108,11 +97,7 @@ def mount(
 def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, pose: Pose) -> Iterator[Finding]:
     where = f"stages.{name}"
     placed = (*stage.placements, *stage.gauges, *stage.stops)
-    taken = {copy for key in placed for copy in copy_names(key)} | {
-        *stage.bodies,
-        *stage.units,
-        *stage.links,
-    }
+    taken = {*stage.bodies, *stage.units, *stage.links, *(copy for key in placed for copy in copy_names(key))}
     if name in taken:
         yield Finding(where, "something else has this name", "Give the stage a name of its own: all that is in it is called by it")
     if pose.mirror is not None:
@@ -158,15 +143,11 @@ def _agree(one: Material | str, other: Material | str) -> bool:
     return digest(one, physics=True) == digest(other, physics=True)
 
 
-def _under(name: str, entries: Mapping[str, Any]) -> dict[str, Any]:
-    return {f"{name}/{key}": value for key, value in entries.items()}
-
-
 @dataclass(frozen=True)
 class _Names:
     """What things of the carried stage are called.
 
-    Its ground is `on`, `drawn` are the bodies that units call by their own names; with `brings_platform` its platform keeps its name.
+    `on` is its ground; `drawn`: bodies that its units draw, which keep their names there; `brings_platform`: its platform is that of all.
     """
 
     name: str
@@ -180,72 +161,38 @@ class _Names:
             return self.on
         return body if body == PLATFORM and self.brings_platform else f"{self.name}/{body}"
 
-    def part(self, part: Part) -> Part:
-        """A part, of the material under its new name."""
-        if isinstance(part, Restricted):
-            return replace(part, part=self.part(part.part))
-        named = {key: f"{self.name}/{value}" for key in ("material", "replaces") if (value := getattr(part, key, None))}
-        return replace(cast("Any", part), **named) if named else part
+    def key(self, section: str, key: str) -> str:
+        """An entry of a section."""
+        return self.body(key) if section == "bodies" else f"{self.name}/{key}"
 
-    def solids(self, body: Body) -> Body:
-        """A body, its solids of the materials under their new names, and whose it is."""
-        solids = {key: replace(cast("Any", solid), material=f"{self.name}/{solid.material}") for key, solid in body.solids.items()}
-        return replace(body, solids=Table(solids), of=None if body.of is None else self.body(body.of))
+    def inside(self, section: str, item: Any) -> Any:
+        """An entry of a section, what it refers to under its new names."""
+        own = self.drawn if section == "units" else ()
 
-    def link(self, link: Link, own: frozenset[str] = frozenset()) -> Link:
-        """A link, of the part under its new name; `own` are the bodies of its unit."""
-        joins = {key: body if body in own else self.body(body) for key, body in _pairs(link.joins)}
-        return replace(
-            link, part=f"{self.name}/{link.part}", joins=Table(joins) if isinstance(link.joins, Mapping) else tuple(joins.values())
-        )
+        def change(field_name: str, text: str) -> str:
+            if field_name in BODIES:
+                return text if field_name == "joins" and text in own else self.body(text)
+            return f"{self.name}/{text}"
 
-    def unit(self, unit: Unit) -> Unit:
-        """A unit."""
-        return replace(
-            unit,
-            bodies=Table({key: self.solids(body) for key, body in unit.bodies.items()}),
-            links=Table({key: self.link(link, self.drawn) for key, link in unit.links.items()}),
-            like=None if unit.like is None else f"{self.name}/{unit.like}",
-        )
+        return renamed(item, (*SECTIONS, *BODIES), change)
 
 
-def _gauges(carried: Mechanism, rename: _Names, frame: Frame) -> Iterator[tuple[str, GaugePlace]]:
+def _placed(entries: Mapping[str, Any], outer: Frame) -> Iterator[tuple[str, Any]]:
+    """Copies one by one, each in its pose in the carrying stage."""
+    for name, item, frame in patterned(entries):
+        yield name, replace(item, pattern=_pose(frame.within(outer)))
+
+
+def _gauges(carried: Mechanism, name: str, frame: Frame) -> Iterator[tuple[str, GaugePlace]]:
     """The gauges one by one: what looks at bodies in its new pose, what reads links or other gauges by their new names."""
     for key, item in carried.gauges.items():
-        names = [f"{rename.name}/{copy}" for copy in copy_names(key)]
         if isinstance(item, Probe):
-            gauge, body, base = f"{rename.name}/{item.gauge}", rename.body(item.body), rename.body(item.base or GROUND)
-            poses = [_pose(each.within(frame)) for each in copy_frames(item.pattern, len(names))]
-            yield from (
-                (name, replace(item, gauge=gauge, body=body, base=base, pattern=pose)) for name, pose in zip(names, poses, strict=True)
-            )
+            yield from _placed({key: item}, frame)
         elif isinstance(item, LinkProbe):
-            links = [f"{rename.name}/{link}" for link in link_names(item.link)]
-            own = replace(item, gauge=f"{rename.name}/{item.gauge}")
-            yield from ((name, replace(own, link=link)) for name, link in zip(names, links, strict=True))
+            links = zip(copy_names(key), link_names(item.link), strict=True)
+            yield from ((copy, replace(item, link=f"{name}/{link}")) for copy, link in links)
         else:
-            yield names[0], replace(item, sum=Table(_under(rename.name, item.sum)))
-
-
-def _stops(carried: Mechanism, rename: _Names, frame: Frame) -> Iterator[tuple[str, Stop]]:
-    """The stops one by one, each in its new pose."""
-    for key, item in carried.stops.items():
-        names = copy_names(key)
-        for name, each in zip(names, copy_frames(item.pattern, len(names)), strict=True):
-            own = replace(item, body=rename.body(item.body), base=rename.body(item.base), pattern=_pose(each.within(frame)))
-            yield f"{rename.name}/{name}", own
-
-
-def _pairs(joins: Any) -> Iterator[tuple[Any, str]]:
-    return iter(joins.items()) if isinstance(joins, Mapping) else iter(enumerate(joins))
-
-
-def _copies(carried: Mechanism, name: str, outer: Frame) -> Iterator[tuple[str, Placement]]:
-    """Copies one by one, each in its pose in the carrying stage."""
-    for key, item in carried.placements.items():
-        copies = copy_names(key)
-        for copy, frame in zip(copies, copy_frames(item.pattern, len(copies)), strict=True):
-            yield f"{name}/{copy}", Placement(f"{name}/{item.unit}", _pose(frame.within(outer)))
+            yield key, replace(item, sum=Table({f"{name}/{member}": weight for member, weight in item.sum.items()}))
 
 
 def _pose(frame: Frame) -> Pose:
@@ -268,10 +215,6 @@ def _point(frame: Frame, at: Vector) -> Vector:
     return _components(frame.point(stack(at)))
 
 
-def _direction(frame: Frame, along: Vector) -> Vector:
-    return _components(frame.direction(stack(along)))
-
-
 def _turned(inertia: Inertia | None, frame: Frame) -> Inertia | None:
     """Moments of inertia along the axes of the carrying stage: R J R^T."""
     if inertia is None or np.array_equal(frame.rotation, identity().rotation):
@@ -281,26 +224,22 @@ def _turned(inertia: Inertia | None, frame: Frame) -> Inertia | None:
     return Inertia(*moments, *(_number(-matrix[..., one, other]) for one, other in ((0, 1), (0, 2), (1, 2))))
 
 
+def _moved(item: Any, frame: Frame) -> Any:
+    """An outline, a body, a link or a load in another frame."""
+    own = {each.name: getattr(item, each.name) for each in fields(item)}
+    points = {name: _point(frame, own[name]) for name in ("at", "start", "end", "reference") if own.get(name) is not None}
+    ways = ("along", "bends", "up", "force")
+    return replace(item, **points, **{name: _components(frame.direction(stack(own[name]))) for name in ways if own.get(name) is not None})
+
+
 def _moved_body(body: Body, frame: Frame) -> Body:
     return replace(
-        body,
-        solids=Table({key: _moved_solid(solid, frame) for key, solid in body.solids.items()}),
+        _moved(body, frame),
+        solids=Table({key: _moved(solid, frame) for key, solid in body.solids.items()}),
         centre=_point(frame, body.centre or (0.0, 0.0, 0.0)) if body.mass is not None else None,
         inertia=_turned(body.inertia, frame),
         points=Table({key: _point(frame, at) for key, at in body.points.items()}),
-        reference=None if body.reference is None else _point(frame, body.reference),
     )
-
-
-def _moved_solid(solid: Solid, frame: Frame) -> Solid:
-    directions = {key: _direction(frame, getattr(solid, key)) for key in ("along", "up") if hasattr(solid, key)}
-    return replace(cast("Any", solid), at=_point(frame, solid.at), **directions)
-
-
-def _moved_link(link: Link, frame: Frame) -> Link:
-    points = {key: _point(frame, at) for key in ("at", "start", "end") if (at := getattr(link, key)) is not None}
-    directions = {key: _direction(frame, along) for key in ("along", "bends") if (along := getattr(link, key)) is not None}
-    return replace(link, **points, **directions)
 
 
 def _override(name: str, key: str) -> str:
@@ -317,9 +256,8 @@ def _provenance(stage: Mechanism, rename: _Names, carried: Mechanism) -> tuple[T
         words = tag.split(" ")
         told = " ".join([*words[:1], *(keys.get(word, word) for word in words[1:2]), *words[2:]])
         thing, _, inside = rest.partition(".")
-        if section in _SECTIONS:
-            called = rename.body(thing) if section == "bodies" else f"{name}/{thing}"
-            tags[f"{section}.{called}.{inside}"] = told
+        if section in NAMED:
+            tags[f"{section}.{rename.key(section, thing)}.{inside}"] = told
         elif "/" in section and dot:
             tags[f"{name}/{section}.{rest}"] = told
     sources = {**{keys[key]: text for key, text in carried.sources.items()}, **stage.sources}

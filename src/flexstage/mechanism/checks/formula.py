@@ -10,7 +10,8 @@ import numpy as np
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.units.expression import Expression, ExpressionError, parse_expression
 from flexstage.base.units.unit import quantity_of_unit
-from flexstage.mechanism.addresses.address import get, quantity_of
+from flexstage.mechanism.addresses.address import quantity_at, value_at
+from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.grammar.formulas import PREFIX, amount_of, cycle_findings, formula_value, scope_of, shown_unit, spelling_findings
 from flexstage.mechanism.mechanism import Mechanism, NamedNumber
 
@@ -39,8 +40,9 @@ def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
     scope = scope_of(mechanism)
     for address in expressions:
         try:
-            wanted = formula_value(mechanism.formulas[address], quantity_of(mechanism, address), scope, address)
-            found = get(mechanism, address)
+            place = locate(mechanism, address)
+            wanted = formula_value(mechanism.formulas[address], quantity_at(place, address), scope, address)
+            found = value_at(mechanism, place)
         except DesignError as error:
             yield from error.findings
             continue

@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Iterator
 from importlib.metadata import PackageNotFoundError, version
+from typing import Any
 
 from flexstage.base.finding import Finding
-from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.grammar import RecordNode, UnionNode, node_of
+from flexstage.mechanism.grammar.node import Node, join
 from flexstage.mechanism.mechanism import Mechanism
 
 
 def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about values of another kind than a file can hold: classes that no register lists, for example.
+    """Findings about values of classes that no register lists: they cannot be written to a file.
 
     >>> from flexstage.parts.rod import Rod
     >>> class Wire(Rod): ...
     >>> print(*kind_findings(Mechanism("", parts={"wire": Wire("steel", length=0.03, diameter=0.001)})))
     parts.wire: found Wire(... where ... Rod ... is expected. Give ...
     """
-    return node_of(Mechanism).check(mechanism, "")
+    return _unlisted(node_of(Mechanism), mechanism, "")
+
+
+def _unlisted(node: Node, value: Any, where: str) -> Iterator[Finding]:
+    if isinstance(node, RecordNode | UnionNode) and type(value) not in node.records:
+        names = " or ".join(record.__name__ for record in node.records)
+        yield Finding(where, f"found {textwrap.shorten(repr(value), 60)} where {names} is expected", f"Give a {names}")
+        return
+    for name, inner, item in node.members(value):
+        yield from () if item is None else _unlisted(inner, item, join(where, name))
 
 
 def package_findings(packages: Iterable[str]) -> Iterator[Finding]:

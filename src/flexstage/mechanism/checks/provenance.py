@@ -8,7 +8,7 @@ from typing import Any
 
 from flexstage.base.finding import DesignError, Finding, suggest_nearest
 from flexstage.base.number import Table
-from flexstage.mechanism.addresses.address import ASSUMED
+from flexstage.mechanism.addresses.address import ASSUMED, value_at
 from flexstage.mechanism.addresses.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -32,7 +32,7 @@ def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
         except DesignError as error:
             yield from (replace(finding, where=where) for finding in error.findings)
             continue
-        yield from _override(where, key, place, value)
+        yield from _override(mechanism, key, place, value)
         prefixes = [".".join((*place.owners[-1:], *place.path[:depth])) for depth in range(1, len(place.path) + 1)]
         other = inside.get(place.address) or next((made[prefix] for prefix in prefixes if prefix in made), None)
         if other is not None:
@@ -41,12 +41,16 @@ def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
         inside.update(dict.fromkeys(prefixes, key))
 
 
-def _override(where: str, key: str, place: Place, value: Any) -> Iterator[Finding]:
+def _override(mechanism: Mechanism, key: str, place: Place, value: Any) -> Iterator[Finding]:
+    where = f'overrides."{key}"'
     if not any(key.startswith(f"{owner}.") for owner in place.owners):
         advice = "Set that value itself; overrides are written unit/link.field or copy/link.field"
         yield Finding(where, f"it addresses {place.address}, which is no override of a link", advice)
-    elif expected := place.node.wanted(value):
-        yield Finding(where, f"found {value!r} where {expected[0]} is expected", expected[1])
+        return
+    try:
+        value_at(replace(mechanism, overrides=Table({key: value})), place)  # constructs what it changes
+    except DesignError as error:
+        yield from (replace(finding, where=where) for finding in error.findings)
 
 
 def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:

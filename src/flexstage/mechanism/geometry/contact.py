@@ -14,6 +14,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, first_design
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.mechanism.assembly.expand import Assembly, expand
@@ -108,7 +109,7 @@ class _Thing:
         return 0.0 if is_flat(self.form) else SAGITTA
 
 
-@lru_cache(maxsize=4)
+@SESSION.keep(4)
 def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """What the outlines of a stage contradict.
 

@@ -6,13 +6,13 @@ Flat faces are exact. Arcs are followed within `SAGITTA`, from inside, so that p
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 from itertools import pairwise, product
 from typing import TypeAlias
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.parts.body import Solid
 from flexstage.parts.part import Part, inner
 from flexstage.parts.pieces import MOST, SAGITTA, corner_count, solid_pieces
@@ -45,7 +45,7 @@ def is_flat(form: Form) -> bool:
     return form.is_flat if isinstance(form, Solid) else form.is_prismatic and not form.is_axisymmetric
 
 
-@lru_cache(maxsize=256)
+@SESSION.keep(256)
 def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
     """The convex pieces of a form in its own frame; a link's `trim` [m] is cut off at both of its ends. An imported shape has none.
 

@@ -34,13 +34,11 @@ from flexstage.mechanism.grammar.node import (
     Node,
     NumberNode,
     Reader,
+    RowNode,
     TextNode,
     VectorNode,
-    Wanted,
     WholeNode,
     Writer,
-    every,
-    is_row,
     join,
     kind,
     meaning,
@@ -104,7 +102,7 @@ _ELSEWHERE = "A kind that another package offers is known where that package is 
 
 
 @dataclass(frozen=True)
-class ListNode(Node):
+class ListNode(RowNode):
     """Texts, choices, numbers or tables in a row, `length` of them (None: any number)."""
 
     item: Node
@@ -115,48 +113,36 @@ class ListNode(Node):
         """A text as it may stand in a file."""
         return f"[{', '.join([self.item.example] * (self.length or 1))}]"
 
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The items."""
-        if not is_row(self, raw, self.length, where, reader):
-            return BAD
-        return every([reader.read(self.item, part, where) for part in raw])
+    @property
+    def size(self) -> int | None:
+        """How many it states."""
+        return self.length
 
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """The items."""
-        return [writer.write(self.item, item, where) for item in value]
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its values, all where it is."""
+        return (("", self.item, part) for part in row)
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its items by number, from 1 on."""
+        return ((str(number), self.item, item) for number, item in enumerate(value, start=1))
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An array."""
         length = {} if self.length is None else {"minItems": self.length, "maxItems": self.length}
         return {"type": "array", "items": self.item.schema(definitions), **length}
 
-    def wanted(self, value: Any) -> Wanted:
-        """A tuple of fitting items."""
-        fits = isinstance(value, tuple) and self.length in (None, len(value)) and all(self.item.wanted(item) is None for item in value)
-        return None if fits else ("a row of values", "Give a tuple")
-
-    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its items by number, from 1 on."""
-        return ((str(number), self.item, item) for number, item in enumerate(value, start=1))
-
 
 @dataclass(frozen=True)
 class NumbersNode(ListNode):
     """Numbers or points in a row, any number of them, each of which has an address: its place, counted from nought."""
 
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The numbers."""
-        if not is_row(self, raw, self.length, where, reader):
-            return BAD
-        return every([reader.read(self.item, part, f"{where}.{place}") for place, part in enumerate(raw)])
-
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """The numbers."""
-        return [writer.write(self.item, item, f"{where}.{place}") for place, item in enumerate(value)]
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its values by their place."""
+        return ((str(place), self.item, part) for place, part in enumerate(row))
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its items by place."""
-        return ((str(place), self.item, item) for place, item in enumerate(value))
+        """Its values by their place."""
+        return self.parts(value)
 
     def child(self, value: Any, name: str) -> Node:
         """A number."""
@@ -190,10 +176,6 @@ class TableNode(Node):
         """An object of any keys."""
         return {"type": "object", "properties": _tags_of(definitions), "additionalProperties": self.item.schema(definitions)}
 
-    def wanted(self, value: Any) -> Wanted:
-        """A mapping by names."""
-        return _wanted_mapping(value)
-
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its values."""
         return ((name, self.item, item) for name, item in value.items())
@@ -217,10 +199,6 @@ class OpenNode(Node):
         """An object of any values."""
         return {"type": "object", "description": self.said}
 
-    def wanted(self, value: Any) -> Wanted:
-        """A mapping by names."""
-        return _wanted_mapping(value)
-
 
 class JoinsNode(Node):
     """The two bodies that a link joins, or a table of bodies by port."""
@@ -243,14 +221,6 @@ class JoinsNode(Node):
         by_port = {"type": "object", "additionalProperties": {"type": "string"}}
         return {"oneOf": [ListNode(TextNode(), 2).schema(definitions), by_port]}
 
-    def wanted(self, value: Any) -> Wanted:
-        """Two names, or a mapping of names."""
-        return None if self._node(value).wanted(value) is None else ("a row of two names", "Give a tuple of two names, or a dict by port")
-
-    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """The names."""
-        return self._node(value).members(value)
-
     def child(self, value: Any, name: str) -> Node:
         """A name."""
         return self._node(value).child(value, name)
@@ -269,6 +239,11 @@ class RecordNode(Node):
     """
 
     record: type
+
+    @property
+    def records(self) -> tuple[type, ...]:
+        """Classes of its values: this one, no class derived from it."""
+        return (self.record,)
 
     @property
     def fields(self) -> Mapping[str, Slot]:
@@ -364,16 +339,10 @@ class RecordNode(Node):
         shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}
         return shape | demand | {"additionalProperties": False}
 
-    def wanted(self, value: Any) -> Wanted:
-        """An instance of the class itself."""
-        return _wanted_one_of(value, [self.record])
-
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its fields, but for optional ones that are absent."""
+        """Its fields."""
         for name, slot in self.fields.items():
-            item = getattr(value, name)
-            if item is not None or not slot.optional:
-                yield name, slot.node, item
+            yield name, slot.node, getattr(value, name)
 
     def child(self, value: Any, name: str) -> Node:
         """A field."""
@@ -399,6 +368,11 @@ class UnionNode(Node):
     usual: str | None = None
     """The alternative of a table that names none."""
 
+    @property
+    def records(self) -> tuple[type, ...]:
+        """Classes of its values."""
+        return tuple(option.record for _, option in self.options)
+
     def name_of(self, value: Any) -> str:
         """The name of a value's alternative."""
         return next(name for name, option in self.options if option.record is type(value))
@@ -418,7 +392,7 @@ class UnionNode(Node):
             return BAD
         options = dict(self.options)
         key = self.told_by or ""
-        entry = reader.catalogue.section(*(option.record for option in options.values()))
+        entry = reader.catalogue.section(*self.records)
         name = raw.get(key, self.usual or (entry.kind if entry and LIKE in raw else None))
         if name is None:
             return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
@@ -437,10 +411,6 @@ class UnionNode(Node):
         """One of the definitions."""
         schemas = [option.schema(definitions, None if name == self.usual else self.told_by, name) for name, option in self.options]
         return {"oneOf": schemas} if len(schemas) > 1 else schemas[0]
-
-    def wanted(self, value: Any) -> Wanted:
-        """An instance of one of the classes."""
-        return _wanted_one_of(value, [option.record for _, option in self.options])
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Those of the alternative."""
@@ -532,16 +502,6 @@ def _tags_of(definitions: Definitions) -> dict[str, Any]:
 
 def _without_like(raw: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in raw.items() if key != LIKE}
-
-
-def _wanted_mapping(value: Any) -> Wanted:
-    fits = isinstance(value, Mapping) and all(isinstance(name, str) for name in value)
-    return None if fits else ("a mapping by name", "Give a dict with names as keys")
-
-
-def _wanted_one_of(value: Any, records: list[type]) -> Wanted:
-    names = " or ".join(record.__name__ for record in records)
-    return None if type(value) in records else (names, f"Give a {names}")
 
 
 def node_of(record: type) -> RecordNode:

@@ -14,9 +14,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, ClassVar
 
-import numpy as np
-
-from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.units.expression import UnknownAmountError
 from flexstage.base.units.quantity import (
     COMPLIANCE,
@@ -34,7 +32,6 @@ from flexstage.base.units.quantity import (
 from flexstage.base.units.unit import parse, quantity_of_unit, show
 from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.grammar.formulas import Numbers, formula_value, is_formula
-from flexstage.mechanism.mechanism import NamedNumber
 from flexstage.spatial.frame import COMPONENTS
 
 MOST_FINDINGS = 100
@@ -44,9 +41,6 @@ _WITH_UNIT = rf"^(?![0-9.eE+-]*$){_NUMBER}(\s*[A-Za-zµμ°%/(].*|\s+1/.*)$"
 _UNIT = r"(\s*[A-Za-zµμ°%/(]|\s+1/)[A-Za-zµμ°%0-9^./() ]*"
 _OPERAND = rf"(-|\(|(sqrt|sin|cos|tan)\s*\(|\s)*([A-Za-z]\w*|{_NUMBER.removeprefix('[+-]?')}({_UNIT})?)[)\s]*"
 _FORMULA = rf"^(?![0-9.eE+-]*$){_OPERAND}([-+*/]{_OPERAND})*$"
-
-Wanted = tuple[str, str] | None
-"""What is expected instead of a value, and advice; `None` if the value is of the right kind."""
 
 
 class Bad:
@@ -169,12 +163,8 @@ class Node:
         """The JSON Schema of what may stand in a file."""
         raise NotImplementedError
 
-    def wanted(self, value: Any) -> Wanted:
-        """What is expected instead of the value, if anything is; what the value holds is not looked at."""
-        raise NotImplementedError
-
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Name, node and value of what a value holds; absent values are left out."""
+        """Name, node and value of what a value holds."""
         return iter(())
 
     def child(self, value: Any, name: str) -> Node:
@@ -191,22 +181,12 @@ class Node:
 
     def parse(self, text: str, where: str) -> Any:
         """The value that the text of an assignment means (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
-        raise refuse(where, "it has several values", "Set one of them, for example its x")
-
-    def fit(self, value: Any, where: str) -> Any:
-        """A frozen value as it is kept; raises `DesignError` at `where` if it is of another kind."""
+        if not self.single:
+            raise refuse(where, "it has several values", "Set one of them, for example its x")
+        reader = Reader(Catalogue((), {}))
+        value = reader.read(self, text, where)
+        require(reader.findings)
         return value
-
-    def check(self, value: Any, where: str) -> Iterator[Finding]:
-        """Findings about values of another kind than their field's."""
-        expected = self.wanted(value)
-        if expected:
-            what, advice = expected
-            text = repr(value)
-            yield Finding(where, f"found {text if len(text) <= 60 else f'{text[:60]}...'} where {what} is expected", advice)
-            return
-        for name, inner, item in self.members(value):
-            yield from inner.check(item, join(where, name))
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
         """Address, value and node of every number of a value; directions, absent values and changes are left out."""
@@ -276,20 +256,6 @@ class NumberNode(Node):
             return ({"anyOf": texts} if len(texts) > 1 else text) | told
         return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | told | {"examples": [float(self.quantity.example)]}
 
-    def wanted(self, value: Any) -> Wanted:
-        """A float, a complex number or an array of them."""
-        return None if _is_number(value) else (self.quantity.noun, "Give a number or an array in SI units")
-
-    def parse(self, text: str, where: str) -> float:
-        """The number in SI."""
-        return parse(text, self.quantity, where=where)
-
-    def fit(self, value: Any, where: str) -> Any:
-        """Whole numbers become floats."""
-        if isinstance(value, bool) or not isinstance(value, (int, float, complex, np.ndarray)):
-            raise refuse(where, f"found {value!r} where a number is expected", "Give a number or an array in SI units")
-        return float(value) if isinstance(value, int) else value
-
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
         """The number itself."""
         if value is not None:
@@ -317,12 +283,6 @@ class NamedNode(Node):
         said = 'a number that formulas refer to by name: "26 mm", a ratio, or a formula of others, "arm / 2"'
         return {"anyOf": [{"type": "number"}, *texts], "description": said}
 
-    def wanted(self, value: Any) -> Wanted:
-        """A number and the text of a unit."""
-        advice = 'Give for example NamedNumber(26 * fs.mm, "mm")'
-        fits = type(value) is NamedNumber and _is_number(value.value) and isinstance(value.unit, str)
-        return None if fits else ("a named number", advice)
-
     def child(self, value: Any, name: str) -> NumberNode:
         """Its value."""
         return NumberNode(quantity_of_unit(value.unit))
@@ -332,8 +292,35 @@ class NamedNode(Node):
         yield where, value.value, self.child(value, "value")
 
 
+class RowNode(Node):
+    """Several values in brackets."""
+
+    @property
+    def size(self) -> int | None:
+        """How many there are; absent: any number."""
+        return None
+
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Where each value of a row is, from where the row is, its node and itself."""
+        raise NotImplementedError
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """One value for each."""
+        if not is_row(self, raw, self.size, where, reader):
+            return BAD
+        return every([reader.read(node, part, join(where, name) if name else where) for name, node, part in self.parts(raw)])
+
+    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
+        """One form for each."""
+        return [writer.write(node, part, join(where, name) if name else where) for name, node, part in self.parts(value)]
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """What it holds."""
+        return self.parts(value)
+
+
 @dataclass(frozen=True)
-class VectorNode(Node):
+class VectorNode(RowNode):
     """Numbers by component: x, y, z; or the rows of a matrix."""
 
     items: tuple[Node, ...]
@@ -349,44 +336,35 @@ class VectorNode(Node):
         """A text as it may stand in a file."""
         return f"[{', '.join(item.example for item in self.items)}]"
 
-    def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The components in SI."""
-        if not is_row(self, raw, len(self.items), where, reader):
-            return BAD
-        return every([reader.read(item, part, f"{where}.{name}") for name, item, part in zip(COMPONENTS, self.items, raw, strict=False)])
-
-    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """The form of each."""
-        return [writer.write(item, part, f"{where}.{name}") for name, item, part in zip(COMPONENTS, self.items, value, strict=False)]
-
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """As many texts."""
         return row_schema([item.schema(definitions) for item in self.items])
 
-    def wanted(self, value: Any) -> Wanted:
-        """A tuple of that length."""
-        return _wanted_row(value, len(self.items))
+    @property
+    def size(self) -> int:
+        """As many as components."""
+        return len(self.items)
 
-    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+    def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its components."""
-        return zip(COMPONENTS, self.items, value, strict=False)
+        return zip(COMPONENTS, self.items, row, strict=False)
 
     def child(self, value: Any, name: str) -> Node:
         """A component."""
         return self.items[COMPONENTS.index(name)]
 
-    def fit(self, value: Any, where: str) -> Any:
-        """Whole numbers become floats."""
-        return _fit_row(value, len(self.items), where)
-
 
 @dataclass(frozen=True)
-class DirectionNode(Node):
+class DirectionNode(VectorNode):
     """Three components of a direction, of any length."""
 
+    items: tuple[Node, ...] = (NumberNode(RATIO),) * 3
     single: ClassVar[bool] = True
-    components: ClassVar[bool] = True
-    shown: ClassVar[str] = '"x"'
+
+    @property
+    def example(self) -> str:
+        """A direction by name."""
+        return '"x"'
 
     @property
     def measures(self) -> Quantity:
@@ -394,53 +372,26 @@ class DirectionNode(Node):
         return DIRECTION
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """A direction by name, or three bare numbers."""
-        advice = f"Write one of {', '.join(DIRECTIONS)}, or three numbers without units"
-        if isinstance(raw, str):
-            return DIRECTIONS.get(raw) or reader.refuse(where, f'found "{short(raw)}" where a direction is expected', advice)
-        formulas = reader.numbers is not None
-        if not isinstance(raw, list) or len(raw) != 3 or not all(is_bare(item) or (formulas and isinstance(item, str)) for item in raw):
+        """A direction by name, or three numbers without units."""
+        if isinstance(raw, str) and raw in DIRECTIONS:
+            return DIRECTIONS[raw]
+        if not isinstance(raw, list) or len(raw) != 3:
+            advice = f"Write one of {', '.join(DIRECTIONS)}, or three numbers without units"
             return reader.refuse(where, f"found {kind(raw)} where a direction is expected", advice)
-        component = NumberNode(RATIO)
-        return every(
-            [
-                reader.read(component, item, f"{where}.{name}") if isinstance(item, str) else _float(item, where)
-                for name, item in zip(COMPONENTS, raw, strict=False)
-            ]
-        )
+        return super().read(raw, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Its name, or its components."""
-        for item in value:
-            require_single(item, where)
-        formulas = [writer.formulas.get(f"{where}.{name}") for name in COMPONENTS[:3]]
-        if any(formulas):
-            return [formula or item for formula, item in zip(formulas, value, strict=True)]
-        return next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), list(value))
+        name = next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), None)
+        return super().write(value, where, writer) if name is None or writer.has_formula(where) else name
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A name or three numbers."""
-        text = {"type": "string", "pattern": _FORMULA}
-        component = {"anyOf": [{"type": "number"}, text]} if definitions.formulas else {"type": "number"}
-        return {"oneOf": [{"enum": list(DIRECTIONS)}, row_schema([component] * 3)]}
+        return {"oneOf": [{"enum": list(DIRECTIONS)}, super().schema(definitions)]}
 
-    def wanted(self, value: Any) -> Wanted:
-        """A tuple of three numbers."""
-        return _wanted_row(value, 3, fits=isinstance(value, tuple) and all(_is_number(item) for item in value))
-
-    def child(self, value: Any, name: str) -> Node:
-        """A component."""
-        return NumberNode(RATIO)
-
-    def parse(self, text: str, where: str) -> Any:
-        """A direction by name."""
-        if text not in DIRECTIONS:
-            raise refuse(where, f'found "{text}"', f"Write one of {', '.join(DIRECTIONS)}, or set its components")
-        return DIRECTIONS[text]
-
-    def fit(self, value: Any, where: str) -> Any:
-        """Whole numbers become floats."""
-        return _fit_row(value, None, where)
+    def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
+        """None: no component varies by itself."""
+        return iter(())
 
 
 def _rows(*quantities: Quantity) -> tuple[VectorNode, ...]:
@@ -472,12 +423,6 @@ class MatrixNode(VectorNode):
         """Six rows."""
         said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zero stands without unit"
         return super().schema(definitions) | {"description": said}
-
-    def wanted(self, value: Any) -> Wanted:
-        """Six rows of six numbers."""
-        rows = value if isinstance(value, tuple) and len(value) == 6 else ((),)
-        fits = all(item.wanted(row) is None and all(map(_is_number, row)) for item, row in zip(self.items, rows, strict=False))
-        return None if fits else ("a 6x6", "Give six rows of six numbers or arrays, as tuples")
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its entries on the diagonal and above."""
@@ -513,10 +458,6 @@ class WholeNode(Node):
         """An integer."""
         return {"type": "integer", **_limits(self.bound)}
 
-    def wanted(self, value: Any) -> Wanted:
-        """An int."""
-        return None if isinstance(value, int) and not isinstance(value, bool) else ("a whole number", "Give an int")
-
 
 @dataclass(frozen=True)
 class FlagNode(Node):
@@ -535,10 +476,6 @@ class FlagNode(Node):
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A boolean."""
         return {"type": "boolean"}
-
-    def wanted(self, value: Any) -> Wanted:
-        """A bool."""
-        return None if isinstance(value, bool) else ("true or false", "Give a bool")
 
 
 @dataclass(frozen=True)
@@ -559,24 +496,6 @@ class TextNode(Node):
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A string."""
         return {"type": "string"}
-
-    def wanted(self, value: Any) -> Wanted:
-        """A str.
-
-        >>> TextNode().wanted(3.0)
-        ('a text', 'Give a str')
-        """
-        return None if isinstance(value, str) else ("a text", "Give a str")
-
-    def parse(self, text: str, where: str) -> str:
-        """The text itself."""
-        return text
-
-    def fit(self, value: Any, where: str) -> Any:
-        """A text."""
-        if not isinstance(value, str):
-            raise refuse(where, f"found {value!r} where a name is expected", "Give a text")
-        return value
 
 
 @dataclass(frozen=True)
@@ -611,20 +530,6 @@ class ChoiceNode(Node):
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """One of the names."""
         return {"enum": list(self.words), "description": meaning(self.choices)}
-
-    def wanted(self, value: Any) -> Wanted:
-        """A member of the enumeration."""
-        return None if isinstance(value, self.choices) else (f"a {self.choices.__name__}", f"Give a member of {self.choices.__name__}")
-
-    def parse(self, text: str, where: str) -> Any:
-        """The choice of that name."""
-        if text not in self.words:
-            raise refuse(where, f'found "{text}"', f"It is one of {', '.join(self.words)}")
-        return self.words[text]
-
-    def fit(self, value: Any, where: str) -> Any:
-        """The choice itself, or that of a name."""
-        return self.parse(value, where) if type(value) is str else value
 
 
 @dataclass(frozen=True)
@@ -730,10 +635,8 @@ def whole_text(value: str, where: str) -> str:
 
 def require_single(value: Any, where: str) -> None:
     """Raise `DesignError` for a number that a file cannot hold."""
-    if not isinstance(value, float):
+    if not isinstance(value, (int, float)):
         raise refuse(where, "it is a batch or complex, and a file holds one design", "Pick one design before writing it")
-    if value - value != 0.0:
-        raise refuse(where, f"found {value}, which is not finite", "Give a finite number")
 
 
 def is_bare(raw: Any) -> bool:
@@ -749,24 +652,6 @@ def _float(raw: float, where: str) -> float:
     if not math.isfinite(value):
         raise refuse(where, f"found {kind(raw)}, which is not finite", "Give a finite number")
     return value
-
-
-def _is_number(value: Any) -> bool:
-    if isinstance(value, np.ndarray):
-        return value.dtype.kind in "fc"
-    return isinstance(value, (float, complex))
-
-
-def _wanted_row(value: Any, count: int, *, fits: bool = True) -> Wanted:
-    if isinstance(value, tuple) and len(value) == count and fits:
-        return None
-    return f"a row of {count} numbers", "Give a tuple of numbers or arrays in SI units"
-
-
-def _fit_row(value: Any, count: int | None, where: str) -> Any:
-    if not isinstance(value, tuple) or (count is not None and len(value) != count):
-        raise refuse(where, f"found {value!r} where components are expected", "Give one number for each component")
-    return tuple(float(item) if isinstance(item, int) else item for item in value)
 
 
 def _limits(bound: Bound | None) -> dict[str, float]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.references import FILES, renamed
 from flexstage.mechanism.store.encode import tree_of
 from flexstage.mechanism.store.tidy import round_to_digits
 from flexstage.mechanism.store.toml import text_of
@@ -71,32 +72,6 @@ def _table(mechanism: Mechanism, section: str, folder: Path) -> str:
 
 
 def _with_paths(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
-    """The description itself where nothing stands in other files."""
-    parts = {name: part.with_paths(change) if isinstance(part, Elastic) else part for name, part in mechanism.parts.items()}
-    if any(part is not mechanism.parts[name] for name, part in parts.items()):
-        mechanism = replace(mechanism, parts=parts)
-    units = {name: unit.bodies for name, unit in mechanism.units.items()}
-    if not any(
-        isinstance(solid, Imported)
-        for bodies in (mechanism.bodies, *units.values())
-        for body in bodies.values()
-        for solid in body.solids.values()
-    ):
-        return mechanism
-    return replace(
-        mechanism,
-        bodies=_bodies(mechanism.bodies, change),
-        units={name: replace(unit, bodies=_bodies(unit.bodies, change)) for name, unit in mechanism.units.items()},
-    )
-
-
-def _bodies(bodies: Mapping[str, Body], change: Callable[[str], str]) -> dict[str, Body]:
-    return {
-        name: replace(
-            body,
-            solids={
-                key: replace(solid, file=change(solid.file)) if isinstance(solid, Imported) else solid for key, solid in body.solids.items()
-            },
-        )
-        for name, body in bodies.items()
-    }
+    """The description with the paths of files that its parts and outlines name changed."""
+    sections = {name: getattr(mechanism, name) for name in ("parts", "bodies", "units")}
+    return replace(mechanism, **{name: renamed(entries, FILES, lambda _, path: change(path)) for name, entries in sections.items()})

@@ -49,6 +49,8 @@ class CommandResult:
     report: Callable[[], str] | None = None
     model: Model | None = None
     warnings: tuple[Finding, ...] = ()
+    kind: str | None = None
+    """The kind of the document, where it is not the name of the command."""
 
 
 _OUTPUTS = {"json": Json, "csv": Csv, "xlsx": Xlsx, "report": Report}
@@ -56,15 +58,16 @@ _KINDS: Mapping[Any, Any] = {Mechanism: DesignOptions}
 _Given = ParamSpec("_Given")
 
 
-def command(*files: str) -> Callable[[Callable[_Given, CommandResult]], Callable[_Given, None]]:
+def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], Callable[_Given, None]]:
     """Make a command of a function that returns a `CommandResult`.
 
     The command writes the requested documents, or prints the tables. A parameter of a dataclass type stands for the options among its
     fields; a `Mechanism` is read from its file. `files` are the options of further output files: those that the function writes, and
     `report`. All outputs are checked before the function is called. If one is stdout, no tables are printed, and warnings go to stderr.
+    A function that returns nothing has written all it has to.
     """
 
-    def decorate(function: Callable[_Given, CommandResult]) -> Callable[_Given, None]:
+    def decorate(function: Callable[_Given, CommandResult | None]) -> Callable[_Given, None]:
         own = signature(function, eval_str=True).parameters
         kinds: dict[str, Any] = {name: _KINDS.get(each.annotation, each.annotation) for name, each in own.items()}
         groups: dict[str, Any] = {name: kind for name, kind in kinds.items() if is_dataclass(kind)}
@@ -78,12 +81,14 @@ def command(*files: str) -> Callable[[Callable[_Given, CommandResult]], Callable
             given: dict[str, Any] = {**options}
             outputs = {name: given[name] for name in ("json", "xlsx", *files)}
             read = [path for name, each in given.items() if name not in outputs and name != "csv" for path in _paths(each)]
-            require_writable([(f"--{name}", target) for name, target in outputs.items()], read)
+            written = ((name, each) for name, target in outputs.items() for each in (target if isinstance(target, list) else [target]))
+            require_writable([(f"--{name}", target) for name, target in written], read)
             made = {name: kind(**{each.name: given[each.name] for each in _options(kind)}) for name, kind in groups.items()}
             opened = {name: each.open() for name, each in made.items() if isinstance(each, DesignOptions)}
             called: Any = function
             found = called(**{name: ({**made, **given} | opened)[name] for name in own})
-            write_result(function.__name__.replace("_", "-"), found, outputs, given["csv"])
+            if found is not None:
+                write_result(found.kind or function.__name__.replace("_", "-"), found, outputs, given["csv"])
 
         vars(run)["__signature__"] = Signature(offered)
         run.__annotations__ = {each.name: each.annotation for each in offered}

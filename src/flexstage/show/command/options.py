@@ -141,5 +141,3 @@ Study: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML)
 Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Go on with a results file that is not complete.")]
 
 Workers: TypeAlias = Annotated[int | None, text_option("--workers", "N", "Processes. Default: one a core.")]
-
-Scheduler: TypeAlias = Annotated[str | None, text_option("--scheduler", "ADDRESS", "Dask scheduler of a cluster, e.g. tcp://host:8786.")]

@@ -5,52 +5,30 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Generator, Iterable, Mapping
+from collections.abc import Generator
 from contextlib import contextmanager
 from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
-from flexstage.base.processes.progress import LINE, LINES, Step, seconds_left, time_left
+from flexstage.base.processes.progress import LINE, LINES, Step, seconds_left
 from flexstage.base.text import printable
 
 
 class ProgressBar:
-    """A bar that follows the steps it is told of; `about` stands before each, `left` are the seconds told last."""
+    """A bar that shows the steps it is called with; `left` are the seconds of the last one."""
 
     def __init__(self, shown: Any | None) -> None:
         self._shown = shown
         self._task = None if shown is None else shown.add_task("starting", total=1.0, left="")
         self._begun = time.monotonic()
-        self._phases: tuple[Mapping[str, float], ...] = ()
-        self._lanes = 1
-        self._spent: dict[str, float] = {}
-        self.about = ""
         self.left: float | None = None
-
-    def follow(self, phases: Iterable[Mapping[str, float]], lanes: int) -> None:
-        """Tell the time left of a whole plan from now on: seconds of jobs by key, so many at once, phase by phase."""
-        self._phases, self._lanes = tuple(phases), lanes
 
     def step(self, step: Step) -> None:
         """Show a step of a computation."""
-        seconds, fraction = (step.left, step.fraction) if not self._phases else self._of_plan(step)
-        self.left = seconds
-        self._show(f"{self.about}{step.text}", fraction)
-
-    def _of_plan(self, step: Step) -> tuple[float, float]:
-        """Seconds left and fraction done of the whole plan; jobs that it does not have come on top."""
-        self._spent |= step.spent
-        known = {key for phase in self._phases for key in phase}
-        more = {key: seconds for key, seconds in step.planned.items() if key not in known}
-        self._phases = (
-            *({key: step.planned.get(key, seconds) for key, seconds in phase.items()} for phase in self._phases),
-            *([more] if more else []),
-        )
-        left = time_left(self._phases, self._spent, step.running, self._lanes)
-        elapsed = time.monotonic() - self._begun
-        return left, elapsed / (elapsed + left) if elapsed + left else 1.0
+        self.left = step.left
+        self._show(step.text, step.fraction)
 
     def share(self, text: str, share: float) -> None:
         """Show the share of a work that is done, and how long the rest takes at its pace."""

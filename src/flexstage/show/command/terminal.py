@@ -28,7 +28,7 @@ def print_note(text: str) -> None:
     sys.stderr.write(f"{text}\n")
 
 
-def print_warning(text: str) -> None:
+def print_warning(text: object) -> None:
     """Print a warning to stderr."""
     print_note(f"warning: {text}")
 

@@ -138,7 +138,7 @@ def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
     if meshed:
         require(findings)
     for finding in findings:
-        print_warning(str(finding))
+        print_warning(finding)
 
 
 def _moving_parts(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
@@ -146,7 +146,7 @@ def _moving_parts(stage: Mechanism, fineness: Fineness, count: int) -> bytes:
     from flexstage.solid.exchange.gltf import Motion, gltf, surfaces  # needs a package of the extra `solid`
 
     with progress_bar() as shown:
-        read = read_solid(stage, Reduction(fineness), solids(Ways(progress=shown.step), lambda finding: print_warning(str(finding))))
+        read = read_solid(stage, Reduction(fineness), solids(Ways(progress=shown.step, notice=print_warning)))
     found = platform_modes(stage, read.model)
     motions = [
         Motion(f"mode {number + 1}: {name}, {found.frequencies[number]:.1f} Hz", found.shapes[:, number])

@@ -17,7 +17,7 @@ def fea_modes(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
     """Modes from the cache, or computed if asked for; where there are none it is said how to get them."""
     if computing:
         with progress_bar() as shown:
-            return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step), lambda finding: print_warning(str(finding))))
+            return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step, notice=print_warning)))
     found = modes.fea_modes_from_cache(mechanism, Cache())
     if found is None:
         print_note("not given: FEA: the cache does not hold this stage; --fea computes it")

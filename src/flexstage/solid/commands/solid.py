@@ -13,9 +13,8 @@ import numpy as np
 import typer
 
 from flexstage.analysis.dynamics.pairing import Pair
-from flexstage.analysis.linear_statics.units import driven_units
 from flexstage.analysis.loaded.standing import require_standing
-from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.finding import Finding, refuse
 from flexstage.base.lazy import Late
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import RATIO, Quantity
@@ -29,25 +28,21 @@ from flexstage.mechanism.store.file import read_text
 from flexstage.parts.leaf import Leaf, LeafEnds
 from flexstage.parts.part import inner
 from flexstage.show.command.answer import CommandResult, command, print_missing
-from flexstage.show.command.options import Design, Report, order_option, output_option, text_option, word_option
+from flexstage.show.command.options import Design, order_option, output_option, text_option, word_option
 from flexstage.show.command.output import save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
-from flexstage.solid.fea.hinges.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.jobs.cache import Cache
-from flexstage.solid.fea.jobs.install import require_installed
-from flexstage.solid.fea.jobs.parts import Parts, Ways
+from flexstage.solid.fea.jobs.parts import Ways
 from flexstage.solid.fea.jobs.remote import Limits, Pool
-from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.results import calibration, verification
-from flexstage.solid.results.hinges import Hinges, SolidHinge, hinges, solid_hinges
-from flexstage.solid.results.plan import Plan, reduction_plan, units_alone, verification_plan, work_ahead
-from flexstage.solid.results.read import Solids, solids
+from flexstage.solid.results.hinges import SolidHinge, hinges, solid_hinges
+from flexstage.solid.results.plan import reduction_plan, units_alone, verification_plan, work_ahead
+from flexstage.solid.results.read import solids
 from flexstage.solid.results.resolution import NOT_ESTIMATED, Converged, Resolution
-from flexstage.solid.results.verified import Known, recall, retain
 from flexstage.solid.show.tables import (
     block_table,
     calibration_table,
@@ -92,19 +87,6 @@ Memory: TypeAlias = Annotated[
 
 
 @dataclass(frozen=True)
-class _Request:
-    """The resolution asked for, the memory to plan with [bytes] (absent: what the machine has left), the processes that stay."""
-
-    resolution: Resolution
-    memory: float | None
-    pool: Pool | None = None
-
-    def ways(self, shown: ProgressBar) -> Ways:
-        """By the cache of the user, with the progress shown."""
-        return Ways(Cache(), shown.step, Limits(memory=self.memory), self.pool)
-
-
-@dataclass(frozen=True)
 class SolidOptions:
     """How exact a solid study is to be, and what it may take."""
 
@@ -113,13 +95,17 @@ class SolidOptions:
     memory: Memory = None
 
     @property
-    def request(self) -> _Request:
-        """The same in numbers. Raises `DesignError` for what is out of range."""
+    def resolution(self) -> Resolution:
+        """The accuracy and the order. Raises `DesignError` for what is out of range."""
         share = parse(self.accuracy, RATIO, where="--accuracy")
         if not 1e-6 <= share < 1.0:
             what = f"{self.accuracy} is no relative error to ask for"
             raise refuse("--accuracy", what, 'Give one between 0.0001 % and 100 %, e.g. "1 %"')
-        return _Request(Resolution(share, self.order), _size(self.memory))
+        return Resolution(share, self.order)
+
+    def ways(self, shown: ProgressBar, pool: Pool | None = None) -> Ways:
+        """By the cache of the user, with the progress shown. Raises `DesignError` for no size of memory."""
+        return Ways(Cache(), shown.step, Limits(memory=_size(self.memory)), pool, print_warning)
 
 
 @dataclass(frozen=True)
@@ -149,11 +135,12 @@ def solid(
 
     What was reduced once is kept and not computed again.
     """
-    asked = options.request
-    if scope is Scope.STAGE:
-        require_standing(mechanism)
+    asked = options.resolution
     with progress_bar() as shown, Pool() as pool:
-        found = _STUDIES[scope](mechanism, replace(asked, pool=pool), shown)
+        ways = options.ways(shown, pool)
+        if scope is Scope.STAGE:
+            require_standing(mechanism)
+        found = _STUDIES[scope](mechanism, asked, ways)
     return CommandResult(
         mechanism,
         lambda: SideBySide(({"what": scope.value}, *found.results)),
@@ -168,24 +155,23 @@ def verify(
     mechanism: Mechanism,
     *,
     options: SolidOptions,
-    report: Report = None,
 ) -> CommandResult:
     """Compare theory with finite elements: which to trust?
 
     Hinges, units and the whole stage: the paper's springs, the lumped model, the lumped model with calibrated hinges, and FEA with its
     own error. Rows that calibrated parts touch are not independent of FEA.
     """
-    asked = options.request
-    known = recall(mechanism, asked.resolution, Cache()) if report is None and asked.memory is None else None
-    if known is None:
+    asked = options.resolution
+    with progress_bar() as shown, Pool() as pool:
+        ways = options.ways(shown, pool)
         require_standing(mechanism)
-        with progress_bar() as shown, Pool() as pool:
-            found = _verify(mechanism, replace(asked, pool=pool), shown)
-        warnings = _verification_warnings(found, asked)
-        _retain(found, warnings, asked)
-    else:
-        print_note("\n".join(("to do: nothing, the verification is in the cache.", *known.notes)))
-        found, warnings = known.of(mechanism), known.warnings
+        found = _verify(mechanism, asked, ways)
+    solved = (("units", found.units), ("stage", found.stage))
+    warnings = (
+        *free_end_warnings(mechanism),
+        *_inexact_hinges(found.hinges),
+        *(warning for name, each in solved if each is not None for warning in _accuracy_warnings(name, each, asked)),
+    )
 
     def page() -> str:
         units = None if found.units is None else pages.unit_section(found.units)
@@ -199,46 +185,14 @@ def verify(
     return CommandResult(mechanism, lambda: found, lambda: _verification_tables(found), page, warnings=warnings)
 
 
-def _verification_warnings(found: verification.Verification, asked: _Request) -> tuple[Finding, ...]:
-    return (
-        *free_end_warnings(found.mechanism),
-        *_inexact_hinges(found.hinges),
-        *(warning for name, each in _solids_of(found) for warning in _accuracy_warnings(name, each, asked.resolution)),
-    )
-
-
-def _solids_of(found: verification.Verification) -> list[tuple[str, Converged[Any]]]:
-    return [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
-
-
-def _retain(found: verification.Verification, warnings: tuple[Finding, ...], asked: _Request) -> None:
-    """Keep what a verification tells, where the description and what was asked alone decide on it, not the memory that there was."""
-    failed = found.units is None and _drives_units(found.mechanism)
-    notes = tuple(f"{name}: {_accuracy_text(each)}" for name, each in _solids_of(found) if each.error <= asked.resolution.accuracy)
-    if asked.memory is None and not failed and not any(each.stopped for _, each in _solids_of(found)):
-        retain(Known(found.rows, dict(found.reasons), warnings, notes), found.mechanism, asked.resolution, Cache())
-
-
-def _drives_units(mechanism: Mechanism) -> bool:
-    """Whether units could be verified alone; not where strokes leave motions of the platform open."""
-    try:
-        return bool(driven_units(mechanism))
-    except DesignError:
-        return False
-
-
-def _verify(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> verification.Verification:
+def _verify(mechanism: Mechanism, asked: Resolution, ways: Ways) -> verification.Verification:
     """The verification, its cost told before it begins, and each verdict as it is known."""
-    reduce, compute = _solids(asked, shown), _hinges(asked, shown)
-    todo = verification_plan(mechanism, asked.resolution, asked.ways(shown))
+    todo = verification_plan(mechanism, asked, ways)
     print_note(str(todo))
-    _work_ahead(todo, asked, shown)
-    return verification.verify(mechanism, asked.resolution, reduce, compute, _tell_verdicts if todo.jobs else None)
-
-
-def _work_ahead(todo: Plan, asked: _Request, shown: ProgressBar) -> None:
-    shown.follow([todo.together], todo.lanes)
-    work_ahead(todo, asked.ways(shown), _notice)
+    work_ahead(todo, ways)
+    return verification.verify(
+        mechanism, asked, solids(ways), hinges(asked.accuracy, asked.order, ways), _tell_verdicts if todo.jobs else None
+    )
 
 
 def _tell_verdicts(rows: tuple[verification.Row, ...]) -> None:
@@ -257,18 +211,14 @@ def calibrate(
 
     The lumped model of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
     """
-    asked = options.request
+    asked = options.resolution
     text = read_text(design)
     mechanism = loads(text, where=str(design))
     with progress_bar() as shown:
-        found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
+        found = calibration.calibrate(text, hinges(asked.accuracy, asked.order, options.ways(shown)), where=str(design))
     save(output, found.text, "--output")
     warnings, tables = _inexact_hinges(found.hinges), [calibration_table(found)]
     return CommandResult(mechanism, lambda: found, lambda: tables, warnings=warnings)
-
-
-def _notice(finding: Finding) -> None:
-    print_warning(str(finding))
 
 
 def _size(memory: str | None) -> float | None:
@@ -281,30 +231,8 @@ def _size(memory: str | None) -> float | None:
     return size
 
 
-def _solids(asked: _Request, shown: ProgressBar) -> Solids:
-    """Reduces with its progress shown."""
-    require_installed()
-    reduce = solids(asked.ways(shown), _notice)
-
-    def reduce_with_progress(mechanism: Mechanism, reduction: Reduction) -> Parts:
-        shown.about = f"order {reduction.fineness.order}, "
-        return reduce(mechanism, reduction)
-
-    return reduce_with_progress
-
-
-def _hinges(asked: _Request, shown: ProgressBar) -> Hinges:
-    compute = hinges(asked.resolution.accuracy, asked.resolution.order, asked.ways(shown), _notice)
-
-    def followed(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
-        shown.about = "hinges, "
-        return compute(forms)
-
-    return followed
-
-
-def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
-    found = solid_hinges(mechanism, _hinges(asked, shown))
+def _hinge_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
+    found = solid_hinges(mechanism, hinges(asked.accuracy, asked.order, ways))
     warnings = _inexact_hinges(found)
     return _Result(
         said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them less exact than was asked.", not warnings),
@@ -315,12 +243,12 @@ def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
     )
 
 
-def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
-    reduce, alone, ways = _solids(asked, shown), units_alone(mechanism), asked.ways(shown)
-    todo = reduction_plan(alone, asked.resolution, ways)
+def _unit_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
+    alone = units_alone(mechanism)
+    todo = reduction_plan(alone, asked, ways)
     bare = todo.jobs > 0
-    _work_ahead(reduction_plan(alone, asked.resolution, ways, bare=True) if bare else todo, asked, shown)
-    found = verification.units_solid(mechanism, asked.resolution, reduce, bare=bare)
+    work_ahead(reduction_plan(alone, asked, ways, bare=True) if bare else todo, ways)
+    found = verification.units_solid(mechanism, asked, solids(ways), bare=bare)
 
     def tables() -> Iterator[Table | None]:
         yield solid_unit_table(found)
@@ -329,18 +257,17 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
             yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
 
     return _Result(
-        said=_accuracy_headline(found, asked.resolution),
+        said=_accuracy_headline(found, asked),
         results=(found, {"units": found.result}),
         tables=tables,
         sections=lambda: iter([pages.unit_section(found)]),
-        warnings=_accuracy_warnings("units", found, asked.resolution),
+        warnings=_accuracy_warnings("units", found, asked),
     )
 
 
-def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
-    reduce = _solids(asked, shown)
-    _work_ahead(reduction_plan([with_drawn_parts(mechanism)], asked.resolution, asked.ways(shown)), asked, shown)
-    found = verification.stage_solid(mechanism, asked.resolution, reduce)
+def _stage_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
+    work_ahead(reduction_plan([with_drawn_parts(mechanism)], asked, ways), ways)
+    found = verification.stage_solid(mechanism, asked, solids(ways))
     stage = found.result
 
     def tables() -> Iterator[Table | None]:
@@ -356,11 +283,11 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         return pages.paired_with_theory(mechanism, stage)
 
     return _Result(
-        said=_accuracy_headline(found, asked.resolution),
+        said=_accuracy_headline(found, asked),
         results=(found, stage),
         tables=tables,
         sections=lambda: iter([pages.stage_solid_section(found), paired()[1]]),
-        warnings=_accuracy_warnings("stage", found, asked.resolution),
+        warnings=_accuracy_warnings("stage", found, asked),
         motions=lambda: pages.solid_motions(mechanism, stage, paired()[0]),
     )
 

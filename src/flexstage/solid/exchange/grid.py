@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -38,26 +37,11 @@ class Gridding(ComponentJob):
 
     fineness: Fineness
 
-    def work(self, call: Call) -> bytes:
-        """The grid, stored as numpy does."""
+    def work(self, call: Call) -> Grid:
+        """The grid."""
         from flexstage.solid.fea.meshing.mesh import mesh_component
 
-        found = grid(mesh_component(self.component, self.fineness, call.report, call.attempt))
-        stream = io.BytesIO()
-        np.savez(stream, points=found.points, cells=found.cells, owner=found.owner)
-        return stream.getvalue()
-
-
-def grid_from_cache(data: bytes) -> Grid:
-    """The grid that a job stored.
-
-    >>> stream = io.BytesIO()
-    >>> np.savez(stream, points=np.zeros((10, 3)), cells=np.arange(10)[None], owner=np.zeros(1, dtype=int))
-    >>> grid_from_cache(stream.getvalue()).cells.shape
-    (1, 10)
-    """
-    with np.load(io.BytesIO(data)) as arrays:
-        return Grid(arrays["points"], arrays["cells"], arrays["owner"])
+        return grid(mesh_component(self.component, self.fineness, call.report, call.attempt))
 
 
 def grid(mesh: PieceMesh) -> Grid:

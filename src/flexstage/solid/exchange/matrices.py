@@ -54,7 +54,7 @@ def export_superelement(
     shape = with_drawn_parts(mechanism)
     whole = _free(_component(components(shape), name))
     sound_components(shape, cache)
-    ((_, element),) = reduce_parts((whole,), replace(reduction, residual=True), Ways(cache, progress, Limits(memory=memory))).parts
+    ((_, element),) = reduce_parts((whole,), replace(reduction, residual=True), Ways(cache, progress, Limits(memory=memory)))
     if element.strokes:
         raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on its both sides")
     with atomic_write(target) as place, place.open("wb") as stream:

@@ -19,10 +19,11 @@ from flexstage.base.processes.progress import Progress
 from flexstage.base.storage.store import temporary_folder
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.solid.exchange.grid import Grid, Gridding, grid_from_cache
+from flexstage.solid.exchange.grid import Grid, Gridding
 from flexstage.solid.fea.geometry.stage_pieces import Stage, require_shapes, stage_pieces
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.jobs.install import require_solver
+from flexstage.solid.fea.jobs.parts import distinct
 from flexstage.solid.fea.jobs.remote import Limits, work_all
 from flexstage.solid.fea.meshing.fineness import Fineness
 from flexstage.solid.fea.solver.component import Component, components
@@ -54,9 +55,7 @@ def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMIT
     require_solver()
     jobs = [Gridding(content(part), part, fineness) for part in parts]
     own: dict[str, Grid] = {}
-    work_all(
-        {job.key: job for job in reversed(jobs)}.values(), lambda job, data: own.update({job.key: grid_from_cache(data)}), limits, progress
-    )
+    work_all(distinct(jobs), lambda job, found: own.update({job.key: found}), limits, progress)
     numbers = {name: number for number, name in enumerate(stage.pieces)}
     return StageMesh(stage, parts, tuple(_place_mesh(job.component, own[job.key], numbers) for job in jobs), tuple(stage.pieces))
 

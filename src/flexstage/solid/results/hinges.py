@@ -29,7 +29,7 @@ from flexstage.solid.fea.hinges.roots import Roots, roots_of
 from flexstage.solid.fea.jobs.hinge_cache import hinges_from_cache
 from flexstage.solid.fea.jobs.parts import Ways
 from flexstage.solid.fea.meshing.estimate import Accuracy
-from flexstage.solid.results.read import STANDARD_WAYS, Notice
+from flexstage.solid.results.read import STANDARD_WAYS
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, mirror
 
 _MOST_STUB = 0.9
@@ -111,12 +111,12 @@ class SolidHinge(DistinctHinge, InNotebook):
         return self.found.freedoms
 
 
-def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
+def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS) -> Hinges:
     """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, side by side, by `ways`."""
     asked = accuracy_of(accuracy, order)
 
     def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
-        return hinges_from_cache(forms, asked, ways, notice)
+        return hinges_from_cache(forms, asked, ways)
 
     return compute
 

@@ -58,7 +58,7 @@ def _from_cache(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> Fea
     shape = with_drawn_parts(mechanism)
     wholes, own = list[tuple[Component, Superelement]](), components(shape)
     for job in reduce_jobs(own, reduction):
-        element = find(cache, job.key, job.name).element
+        element = find(cache, job.key, job.name)
         if element is None:
             return None
         wholes.append((job.component, element))

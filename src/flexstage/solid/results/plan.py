@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from itertools import chain
 
 from flexstage.analysis.linear_statics.units import driven_units
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.finding import DesignError, require
 from flexstage.base.processes.memory import available, gigabytes
-from flexstage.base.processes.progress import duration, time_left
+from flexstage.base.processes.progress import duration
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
@@ -17,13 +17,12 @@ from flexstage.solid.fea.geometry.sound import check_together, sound_components
 from flexstage.solid.fea.jobs.cache import holds
 from flexstage.solid.fea.jobs.hinge_cache import hinge_jobs
 from flexstage.solid.fea.jobs.memory import freedoms
-from flexstage.solid.fea.jobs.parts import Ways, obtain, reduce_jobs
+from flexstage.solid.fea.jobs.parts import Ways, distinct, obtain, reduce_jobs
 from flexstage.solid.fea.jobs.reducing import Reduce, StoredJob
 from flexstage.solid.fea.jobs.remote import workers
 from flexstage.solid.fea.meshing.estimate import Accuracy
 from flexstage.solid.fea.solver.component import Component
 from flexstage.solid.results.hinges import accuracy_of, distinct_hinges, require_hinges, turned_forms
-from flexstage.solid.results.read import Notice
 from flexstage.solid.results.resolution import Resolution, first_reductions, orders_of
 
 
@@ -57,14 +56,10 @@ class Plan:
         return sum(len(phase.seconds) for phase in self.phases)
 
     @property
-    def together(self) -> dict[str, float]:
-        """What each usually takes [s], by key."""
-        return {key: seconds for phase in self.phases for key, seconds in phase.seconds.items()}
-
-    @property
     def seconds(self) -> float:
         """What they usually take in one queue [s]."""
-        return time_left([self.together], {}, lanes=self.lanes)
+        each = [seconds for phase in self.phases for seconds in phase.seconds.values()]
+        return max(sum(each) / self.lanes, max(each, default=0.0))
 
     def __str__(self) -> str:
         """The plan in a line or two.
@@ -126,7 +121,7 @@ def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *
 
 def _plan(phases: Mapping[str, Iterable[StoredJob]], ways: Ways, further: str, needed: frozenset[str]) -> Plan:
     """A plan of the jobs of phases by name, each of them once; refused where one that is needed is far beyond memory or time."""
-    whole = {name: _distinct(jobs) for name, jobs in phases.items()}
+    whole = {name: distinct(jobs) for name, jobs in phases.items()}
     todo = tuple(_phase(name, jobs, ways) for name, jobs in whole.items())
     known = sum(map(len, whole.values())) - sum(len(phase.todo) for phase in todo)
     memory = available() if ways.limits.memory is None else ways.limits.memory
@@ -135,21 +130,18 @@ def _plan(phases: Mapping[str, Iterable[StoredJob]], ways: Ways, further: str, n
     return Plan(todo, workers(ways.limits), known, further, needed)
 
 
-def work_ahead(plan: Plan, ways: Ways, notice: Notice | None = None) -> None:
+def work_ahead(plan: Plan, ways: Ways) -> None:
     """Work what is planned in one queue: hinges, stage and units wait for nobody, and find it at hand in the pool of `ways`.
 
     Raises `DesignError` where what is needed in any case cannot be had; what only a unit alone lacks is told when its turn comes.
     """
     todo = [job for phase in plan.phases for job in phase.todo]
     try:
-        _, notices = obtain(todo, ways)
+        obtain(todo, ways)
     except DesignError:
         known = {} if ways.pool is None else ways.pool.results
         if any(job.key in plan.needed and job.key not in known for job in todo):
             raise
-    else:
-        for each in notices:
-            (notice or _ignore)(each)
 
 
 def units_alone(mechanism: Mechanism) -> list[Mechanism]:
@@ -164,13 +156,6 @@ def units_alone(mechanism: Mechanism) -> list[Mechanism]:
         return []
 
 
-def _distinct(jobs: Iterable[StoredJob]) -> tuple[StoredJob, ...]:
-    first: dict[str, StoredJob] = {}
-    for job in jobs:
-        first.setdefault(job.key, job)
-    return tuple(first.values())
-
-
 def _phase(name: str, jobs: Iterable[StoredJob], ways: Ways) -> Phase:
     """Those of the jobs that are not in the cache."""
     todo = tuple(job for job in jobs if ways.cache is None or not holds(ways.cache, job.key, job.stored))
@@ -180,7 +165,3 @@ def _phase(name: str, jobs: Iterable[StoredJob], ways: Ways) -> Phase:
     ]
     memory, unknowns = max(sizes, default=(0.0, 0.0))
     return Phase(name, {job.key: job.seconds() for job in todo}, unknowns, memory, todo)
-
-
-def _ignore(_finding: Finding) -> None:
-    """Nobody is told."""

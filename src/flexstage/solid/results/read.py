@@ -6,22 +6,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from flexstage.base.finding import Finding
+from flexstage.base.arguments import check_arguments
+from flexstage.base.processes.progress import Progress
 from flexstage.base.storage.digest import digest
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.solid.fea.geometry.sound import sound_components
+from flexstage.solid.fea.jobs.cache import Cache
 from flexstage.solid.fea.jobs.parts import Parts, Ways, content_in_stage, reduce_parts
+from flexstage.solid.fea.jobs.remote import Limits, Pool
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.fea.solver.assemble import Placed, linear_model, place_parts
 
 Solids: TypeAlias = Callable[[Mechanism, Reduction], Parts]
 """Reduces the components of a stage."""
-
-Notice: TypeAlias = Callable[[Finding], None]
-"""Told what is to be known but stops nothing: a damaged file of the cache."""
 
 STANDARD_WAYS = Ways()
 
@@ -54,20 +54,13 @@ class SolidRead:
         return list({id(item.element): item for item in self.placed}.values())
 
 
-def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Solids:
-    """Checks outlines and reduces components by `ways`: from a cache, telling the progress; `notice` is told what is to be said about it.
+def solids(ways: Ways = STANDARD_WAYS) -> Solids:
+    """A function that checks outlines and reduces components by `ways`: from a cache, with progress.
 
     >>> solids()(Mechanism("nothing"), Reduction())
     ()
     """
-
-    def reduce(mechanism: Mechanism, reduction: Reduction) -> Parts:
-        found = reduce_parts(sound_components(mechanism, ways.cache, pool=ways.pool), reduction, ways)
-        for finding in found.notices:
-            (notice or _ignore)(finding)
-        return found.parts
-
-    return reduce
+    return lambda mechanism, reduction: reduce_parts(sound_components(mechanism, ways.cache, pool=ways.pool), reduction, ways)
 
 
 def remember(reduce: Solids) -> Solids:
@@ -92,14 +85,36 @@ def remember(reduce: Solids) -> Solids:
     return again
 
 
-def _ignore(_finding: Finding) -> None:
-    """Nobody is told."""
-
-
 STANDARD_SOLIDS = solids()
-"""By the cache of the user, told to nobody."""
+"""By the cache of the user."""
 
-STANDARD_REDUCTION = Reduction()
+STANDARD_REDUCTION, _CACHE = Reduction(), Cache()
+
+
+@check_arguments
+def model(
+    mechanism: Mechanism,
+    reduction: Reduction = STANDARD_REDUCTION,
+    *,
+    cache: Cache | None = _CACHE,
+    progress: Progress | None = None,
+    memory: float | None = None,
+) -> LinearModel:
+    """Read a stage as 3-D elastic solids: finite elements of each distinct component, reduced by Craig and Bampton's method and joined.
+
+    Same names of inputs and outputs as `lumped`. Every component is drawn, meshed and reduced once, in a process of its own, and kept in
+    the `cache` (`None`: neither looked up nor kept). `progress` is told what is done, the fraction and the seconds left; `memory` [bytes]
+    bounds what is planned with (absent: what the machine has left). Raises `DesignError` for links without a shape, for gaps, overlaps and
+    slivers of outlines, all by name before anything is meshed, for meshes that cannot be made, too little memory or time, and stages that
+    move freely. What is to be said about the cache is warned.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> model(parallelogram(), memory=1e6, cache=None)
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: ...
+    """
+    with Pool() as pool:
+        return read_solid(mechanism, reduction, solids(Ways(cache, progress, Limits(memory=memory), pool))).model
 
 
 def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:

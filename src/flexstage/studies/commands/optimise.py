@@ -11,13 +11,10 @@ from flexstage.show.command import options
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.output import save
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.terminal import print_note
-from flexstage.studies.optimisation.cost import search_cost
 from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.result import Front, Optimum
 from flexstage.studies.optimisation.search.front import pareto_front
 from flexstage.studies.optimisation.search.optimum import optimise as run_optimise
-from flexstage.studies.optimisation.setting import setting
 from flexstage.studies.optimisation.show.report import front_report, optimise_report
 from flexstage.studies.optimisation.show.tables import contradiction_text, front_tables, optimise_tables
 from flexstage.studies.optimisation.stage_text import design_path, design_text, write_optimum
@@ -46,7 +43,6 @@ def optimise(
     if len(definition.objectives) > 1 and output is not None:
         raise refuse("--output", "a front has many designs", "Set a limit on one objective, optimise the other, and write that design")
     run = run_optimise if len(definition.objectives) == 1 else pareto_front
-    print_note(str(search_cost(setting(asked, definition))))
     with progress_bar() as shown:
         found = run(asked, definition, lambda text: shown.share(text, 0.0))
     _require_solution(found)

@@ -11,9 +11,8 @@ from typing import Annotated
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
-from flexstage.show.command.options import Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.options import Resume, Study, Workers, output_option
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.terminal import print_note
 from flexstage.studies.sweeps.effects import effects
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.sweeps.execution.run import sweep as run_sweep
@@ -31,7 +30,6 @@ def sweep(
     output: Annotated[Path, output_option("RESULTS.H5", "Results file to write: every design.")],
     resume: Resume = False,
     workers: Workers = None,
-    scheduler: Scheduler = None,
 ) -> CommandResult:
     """Compute many designs; show what varies with what.
 
@@ -44,9 +42,8 @@ def sweep(
         results = run_sweep(
             asked,
             output,
-            Run(workers, resume, scheduler),
+            Run(workers, resume),
             lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1)),
-            lambda cost: print_note(str(cost)),
         )
     found = Sweep(asked, results, effects(results, asked.plan))
     page, warnings = partial(sweep_report, found), loaded_findings(asked)

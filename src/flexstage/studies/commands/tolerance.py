@@ -9,9 +9,8 @@ from typing import Annotated
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
-from flexstage.show.command.options import Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.options import Resume, Study, Workers, output_option
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.terminal import print_note
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.tolerances.file import load_tolerance
@@ -27,7 +26,6 @@ def tolerance(
     output: Annotated[Path | None, output_option("RESULTS.H5", "Results file to write: every copy.")] = None,
     resume: Resume = False,
     workers: Workers = None,
-    scheduler: Scheduler = None,
 ) -> CommandResult:
     """Scatter dimensions and materials: yield, allowances.
 
@@ -42,9 +40,8 @@ def tolerance(
         found = run_tolerance(
             asked,
             output,
-            Run(workers, resume, scheduler),
+            Run(workers, resume),
             lambda done, of: shown.share(f"{done} of {of} copies", done / max(of, 1)),
-            lambda cost: print_note(str(cost)),
         )
     page, warnings = partial(tolerance_report, found), loaded_findings(found.study)
     return CommandResult(found.study.design, lambda: found, lambda: tolerance_tables(found), page, Model.LUMPED, warnings)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
 from flexstage.analysis.loaded.stability import DOUBTFUL, stability
 from flexstage.analysis.loaded.standing import load_factors
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, stack
+from flexstage.base.session import SESSION
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
@@ -78,7 +77,7 @@ def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
     return tuple(Finding("the best design", each.what, each.advice) for each in factors.warnings)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _least(study: Study) -> tuple[float, Array]:
     """The least load factor among the ends of every range, others as drawn, and the corner of the worse ends; and the values there."""
     if not _has_load(study.design):

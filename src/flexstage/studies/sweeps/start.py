@@ -8,9 +8,8 @@ from typing import Any
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.units.quantity import Quantity
-from flexstage.cases.parameters import Stated, parameter, with_parameters
-from flexstage.cases.registry import Variant, case, shipped_case
-from flexstage.mechanism.grammar.node import NumberNode
+from flexstage.cases.parameters import Stated, parameter
+from flexstage.cases.registry import Variant, case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load
 from flexstage.studies.form import StudyFile, VariedTable
@@ -38,10 +37,9 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
 
 def _draw(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
     """The case with the parameters that the table states."""
-    own, stated = shipped_case(name).parameters, _read_parameters(name, table)
-    changed = with_parameters(own, stated)
-    names = (parameter(own, each).name for each in stated)
-    return case(name, stated), Variant(name, tuple((each, parameter(changed, each).value) for each in names))
+    stated = _read_parameters(name, table)
+    changed = case(name, stated)
+    return changed, Variant(name, tuple((each, parameter(changed, each).value) for each in stated))
 
 
 def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
@@ -50,9 +48,8 @@ def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
     findings: list[Finding] = []
     for key, value in _leaves(table):
         try:
-            known = parameter(shipped_case(name).parameters, key, f"parameters.{key}")
-            number = isinstance(known.node, NumberNode) and known.node.quantity.si != "1"
-            if number and not isinstance(value, str):
+            known = parameter(case(name), key, f"parameters.{key}")
+            if known.quantity.si != "1" and not isinstance(value, str):
                 findings.append(Finding(f"parameters.{key}", f"found {value!r} without a unit", f'Write for example "{known.text}"'))
             else:
                 found[key] = value
@@ -88,16 +85,12 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
     findings: list[Finding] = []
     for each in table.parameter or ():
         try:
-            known = parameter(variant.parameters, each, f"{where}.parameter")
+            known = parameter(variant.start, each, f"{where}.parameter")
         except DesignError as error:
             findings += error.findings
             continue
         names.append(known.name)
-        if known.quantity is None:
-            what = f"{known.name} is no number that can vary: {known.kind}"
-            findings.append(Finding(f"{where}.parameter", what, "State it in [parameters]"))
-        else:
-            found.append(known.quantity)
+        found.append(known.quantity)
     require(findings)
     return tuple(names), one_quantity(f"{where}.parameter", found)
 

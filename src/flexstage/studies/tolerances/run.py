@@ -9,7 +9,7 @@ from typing import Annotated
 from flexstage.base.arguments import check_arguments
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.storage.store import temporary_folder
-from flexstage.studies.sweeps.execution.run import DEFAULT, Progress, Run, Told, sweep
+from flexstage.studies.sweeps.execution.run import DEFAULT, Progress, Run, sweep
 from flexstage.studies.sweeps.result import StudyResult
 from flexstage.studies.tolerances.allowance import Allowance, allowance
 from flexstage.studies.tolerances.definition import Tolerance
@@ -88,7 +88,6 @@ def tolerance(
     path: str | os.PathLike[str] | None = None,
     how: Run = DEFAULT,
     progress: Progress | None = None,
-    told: Told | None = None,
 ) -> Toleranced:
     """Run a tolerance study, its copies kept in the results file at `path` (absent: nowhere), as `sweep` keeps the designs of any study.
 
@@ -101,8 +100,8 @@ def tolerance(
     """
     if path is None:
         with temporary_folder() as place:
-            return tolerance(study, place / "copies.h5", how, progress, told)
-    results = sweep(study, path, how, progress, told)
+            return tolerance(study, place / "copies.h5", how, progress)
+    results = sweep(study, path, how, progress)
     found = slopes(study)
     said = summary(study, results, found)
     return Toleranced(study, results, found, said, allowance(study, results, found, said))

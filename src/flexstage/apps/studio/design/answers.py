@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from flexstage.apps.studio.protocol import Amount, Channel, Problem
 
@@ -20,13 +19,5 @@ class Reading:
     gauges: tuple[Channel, ...] = ()
     inputs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
-    links: Mapping[str, int | None] | None = None
+    links: dict[str, int | None] = field(default_factory=dict[str, int | None])
     paths: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Written:
-    """A text with a number set, and what was set; empty where the other text with that number is not quite this design."""
-
-    text: str
-    stated: str

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +17,10 @@ from flexstage.apps.studio.design.answers import Reading
 from flexstage.apps.studio.protocol import Amount, Channel, Problem
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import first_design
+from flexstage.base.session import SESSION
 from flexstage.base.units.quantity import Bound, Quantity
 from flexstage.base.units.unit import show
-from flexstage.mechanism.addresses.address import provenance, set_text
+from flexstage.mechanism.addresses.address import provenance
 from flexstage.mechanism.addresses.locate import link_path, locate
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.grammar.grammar import node_of
@@ -36,33 +37,10 @@ _FROM_NOUGHT = 10.0
 """How far it goes from nought, in the unit that is shown."""
 
 
+@SESSION.keep(8)
 def design(text: str, file: str) -> Mechanism:
     """The design that a text says; raises `DesignError` with all that is wrong with it."""
-    return _made(_Source(text, file, lambda: loads(text, where=Path(file).name, folder=Path(file).parent)))
-
-
-def follow(text: str, file: str, before: str, address: str, stated: str) -> None:
-    """Take a text for another one with a number set, as `write` has found it to be: parts that stay are those of that design."""
-    keep(text, file, lambda: set_text(design(before, file), address, stated))
-
-
-def keep(text: str, file: str, make: Callable[[], Mechanism]) -> None:
-    """Take a description for what a text says, as it has been found to be; raises what making it raises."""
-    _made(_Source(text, file, make))
-
-
-@dataclass(frozen=True)
-class _Source:
-    """A text in its file, and how its design is made."""
-
-    text: str
-    file: str
-    make: Callable[[], Mechanism] = field(compare=False)
-
-
-@lru_cache(maxsize=8)
-def _made(source: _Source) -> Mechanism:
-    return source.make()
+    return loads(text, where=Path(file).name, folder=Path(file).parent)
 
 
 def read(text: str, file: str, stored: str) -> Reading:
@@ -130,7 +108,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, float, NumberNode]]:
         yield from place.node.numbers(value, place.address)
 
 
-@lru_cache(maxsize=2)
+@SESSION.keep(2)
 def _stored_values(text: str, file: str) -> Mapping[str, float]:
     try:
         return {address: float(value) for address, value, _ in _numbers(design(text, file)) if np.ndim(value) == 0}
@@ -203,19 +181,21 @@ def _actuators(mechanism: Mechanism, assembly: Assembly) -> Iterator[Channel]:
     if assembly.strokes:
         limits = stroke_limits(mechanism)
         for name, low, high in zip(limits.actuators, first_design(limits.low, 1), first_design(limits.high, 1), strict=True):
-            yield _channel(name, "m", _known(low), _known(high))
+            yield _channel(name, "m", finite(low), finite(high))
     for name in assembly.thrusts:
         yield _channel(name, assembly.actuator(name).input.si, None, None)
 
 
 def _gauges(assembly: Assembly) -> Iterator[Channel]:
     for name, gauge in assembly.gauges.items():
-        half = _known(0.5 * float(np.ravel(np.real(gauge.gauge.range))[0]))
+        half = finite(0.5 * np.asarray(gauge.gauge.range))
         yield _channel(name, gauge.unit, None if half is None else -half, half)
 
 
-def _known(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def finite(value: Any) -> float | None:
+    """A number of the first design; nothing for one that is not finite, or absent."""
+    found = np.nan if value is None else float(np.ravel(np.real(value))[0])
+    return found if np.isfinite(found) else None
 
 
 def _sixfold(places: Iterable[str], components: Iterable[str]) -> Iterator[str]:

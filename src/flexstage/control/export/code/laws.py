@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised, filtered
@@ -19,7 +20,7 @@ from flexstage.control.export.code.program import ProgramSetting
 from flexstage.control.export.code.text import number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.parts import Parts, parts
-from flexstage.control.systems.system import System, side_by_side, static
+from flexstage.control.systems.system import System, static
 from flexstage.models.linear.model import Channel
 
 
@@ -181,7 +182,7 @@ def _notches(law: Decentralised, step: float) -> System:
     groups = [[each.system(step) for each in group] for group in law.notches or ((),) * len(law.laws)]
     chains = [modal_form(reduce(filtered, group, static(np.eye(1), port, port, step))) for group in groups]
     names = tuple(Channel(f"loop{place}", "m") for place in range(len(chains)))
-    A, B, C, D = (side_by_side([getattr(each, name) for each in chains]) for name in "ABCD")
+    A, B, C, D = (scipy.linalg.block_diag(*(getattr(each, name) for each in chains)) for name in "ABCD")
     return System(A, B, C, D, names, names, step)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.stack_test import StackTest
+from flexstage.control.show.figures.frequency import legend_above
 from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context
 
@@ -38,7 +39,7 @@ def stack_figure(test: StackTest) -> Any:
             panel.set_xlabel("volts applied [V]")
             panel.set_ylabel(to_typography(label), labelpad=1.0)
         for panel in (axes[0], axes[2]):
-            panel.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2)
+            legend_above(panel, 2)
     return figure
 
 

@@ -27,9 +27,9 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
         (upper, lower), loops = grid[:, 0], found.loops
         for index, name in enumerate(found.names):
             x, size = thin_out(found.frequencies, np.abs(loops[:, index]))
-            upper.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
+            upper.loglog(x, np.maximum(size, _LEAST), linewidth=1.1, label=name, **look(index))
             x, phase = thin_out(found.frequencies, _phase(loops[:, index]))
-            lower.semilogx(x, phase, color=_colour(index), linewidth=1.0, linestyle=_dash(index))
+            lower.semilogx(x, phase, linewidth=1.0, **look(index))
         upper.axhline(1.0, color=INK, linewidth=0.7)
         lower.axhline(-180.0, color=INK, linewidth=0.7)
         _set_limits(upper, loops)
@@ -38,12 +38,10 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
         upper.plot(*places.T, "o", color=INK, markersize=3.0, markerfacecolor=PAPER, markeredgewidth=0.7, zorder=5)
         upper.set_ylabel("open loop L")
         upper.tick_params(labelbottom=False)
-        lower.set_ylabel("phase [°]")
         _phase_ticks(lower)
         plain_ticks(lower.xaxis, upper.yaxis)
-        lower.set_xlabel("frequency [Hz]")
-        lower.set_xlim(*_span(found.frequencies, loops))
-        _legend(upper, len(found.names))
+        lower.set(xlabel="frequency [Hz]", ylabel="phase [°]", xlim=_span(found.frequencies, loops))
+        legend_above(upper)
     return figure
 
 
@@ -56,17 +54,14 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
         for axes, values, title in ((grid[0, 0], own, "sensitivity |S|"), (grid[0, 1], 1.0 - own, "following |T|")):
             for index, name in enumerate(found.names):
                 x, size = thin_out(found.frequencies, np.abs(values[:, index]))
-                axes.loglog(x, np.maximum(size, _LEAST), color=_colour(index), linewidth=1.1, label=name, linestyle=_dash(index))
+                axes.loglog(x, np.maximum(size, _LEAST), linewidth=1.1, label=name, **look(index))
             axes.axhline(1.0, color=INK, linewidth=0.7)
-            axes.set_xlim(*_span(found.frequencies, values))
-            axes.set_ylim(1e-3, 10.0)
+            axes.set(xlabel="frequency [Hz]", ylabel=title, xlim=_span(found.frequencies, values), ylim=(1e-3, 10.0))
             plain_ticks(axes.xaxis, axes.yaxis)
-            axes.set_xlabel("frequency [Hz]")
-            axes.set_ylabel(title)
         grid[0, 0].axhline(highest, color=SERIES[3], linewidth=0.8, linestyle="--")
         left = _span(found.frequencies, own)[0] * 1.15
         grid[0, 0].text(left, highest * 1.1, f"{highest:.3g}", color=SERIES[3], fontsize=6.5)
-        _legend(grid[0, 0], len(found.names))
+        legend_above(grid[0, 0])
     return figure
 
 
@@ -83,9 +78,8 @@ def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
                 continue
             _measured_panel(axes, found, index)
             axes.set_title(names[index], loc="right")
-            axes.set_xlabel("frequency [Hz]" if index + columns >= len(names) else "")
-            axes.set_ylabel("|S|" if index % columns == 0 else "")
-        grid[0, 0].legend(loc="lower left", bbox_to_anchor=(-0.02, 1.12), ncols=4, borderaxespad=0.0, handlelength=1.6)
+            axes.set(xlabel="frequency [Hz]" if index + columns >= len(names) else "", ylabel="|S|" if index % columns == 0 else "")
+        legend_of_lines(figure, grid[:1, 0])
     return figure
 
 
@@ -117,11 +111,7 @@ def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
         plane.plot(np.real(inner), np.imag(inner), "x", color=SERIES[0], markersize=3.5, markeredgewidth=0.8)
         plane.plot(np.real(outer), np.imag(outer), "x", color=SERIES[3], markersize=5.5, markeredgewidth=1.3)
         plane.set_aspect("equal", adjustable="box")
-        plane.set_xlim(-1.08, 1.08)
-        plane.set_ylim(-1.08, 1.08)
-        plane.set_xlabel("Re z")
-        plane.set_ylabel("Im z")
-        plane.set_title("z plane")
+        plane.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), xlabel="Re z", ylabel="Im z", title="z plane")
         _damping_panel(damped, poles, step, alone)
     return figure
 
@@ -133,30 +123,18 @@ def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) ->
         axes.plot(frequencies, ratios, "o", color=MUTED, markersize=3.5, markerfacecolor="none", markeredgewidth=0.6, label="stage alone")
     frequencies, ratios = _damping(poles, step)
     axes.plot(frequencies, ratios, "x", color=SERIES[0], markersize=4.0, markeredgewidth=0.9, label="closed loop", linestyle="none")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_ylim(min(0.3 * float(np.min(ratios[ratios > 0.0], initial=1.0)), 0.5), 130.0)
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("damping ratio [%]")
+    least = min(0.3 * float(np.min(ratios[ratios > 0.0], initial=1.0)), 0.5)
+    axes.set(xscale="log", yscale="log", ylim=(least, 130.0), xlabel="frequency [Hz]", ylabel="damping ratio [%]")
     plain_ticks(axes.xaxis, axes.yaxis)
-    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2, handletextpad=0.2)
+    legend_above(axes, 2)
 
 
 def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
-    """A curve over rising x > 0 with so few points as a picture can show: of each bin, even in log x, its ends and extremes.
-
-    >>> x, y = thin_out(np.linspace(1.0, 100.0, 5000), np.zeros(5000))
-    >>> len(x) < 1100, x[0].item(), x[-1].item()
-    (True, 1.0, 100.0)
-    """
+    """A curve by fewer points: the least and the largest of each of many stretches."""
     if len(x) <= 2 * _POINTS:
         return x, y
-    edges = np.searchsorted(x, np.geomspace(x[0], x[-1], _POINTS + 1)[1:-1])
-    kept = {0, len(x) - 1}
-    for part in np.split(np.arange(len(x)), np.unique(edges)):
-        if len(part):
-            kept |= {int(part[0]), int(part[np.argmin(y[part])]), int(part[np.argmax(y[part])]), int(part[-1])}
-    places = np.array(sorted(kept))
+    stretches = np.array_split(np.arange(len(x)), _POINTS)
+    places = np.unique([0, len(x) - 1, *(part[pick(y[part])] for part in stretches for pick in (np.argmin, np.argmax))])
     return x[places], y[places]
 
 
@@ -166,13 +144,9 @@ def _phase(values: Array) -> Array:
     return angle - _TURN * np.ceil((angle[0] - 90.0) / _TURN)
 
 
-def _colour(index: int) -> str:
-    return SERIES[index % (len(SERIES) - 1)]
-
-
-def _dash(index: int) -> Any:
-    """Pairs of a symmetric stage lie on one another: every second one is dashed."""
-    return (0, (4.0, 2.0)) if index % 2 else "-"
+def look(index: int) -> dict[str, Any]:
+    """Colour of a series; every second one is dashed."""
+    return {"color": SERIES[index % (len(SERIES) - 1)], "linestyle": (0, (4.0, 2.0)) if index % 2 else "-"}
 
 
 def _span(frequencies: Array, values: Array) -> tuple[float, float]:
@@ -218,9 +192,9 @@ def legend_of_lines(figure: Any, panels: Iterable[Any], columns: int = 8) -> Non
     figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=columns, handlelength=1.4, borderaxespad=0.2)
 
 
-def _legend(axes: Any, count: int) -> None:
-    if count > 1:
-        axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=8, handlelength=1.6, columnspacing=1.1, borderaxespad=0.2)
+def legend_above(axes: Any, columns: int = 8) -> None:
+    """The legend of a panel, over it."""
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=columns, handlelength=1.6, columnspacing=1.1, borderaxespad=0.2)
 
 
 def _circles(axes: Any) -> None:

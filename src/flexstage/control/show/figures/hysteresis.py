@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.control.show.figures.frequency import legend_above
 from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context
 
@@ -31,9 +32,7 @@ def hysteresis_figure(wanted: Array, reached: Mapping[str, Array]) -> Any:
             look = {"color": SERIES[(1, 0, 2)[index % 3]], "linewidth": 1.0, "label": name}
             grid[0, 0].plot(form.factor * wanted[::step], form.factor * each[::step], **look)
             grid[0, 1].plot(form.factor * wanted[::step], fine.factor * (each - wanted)[::step], **look)
-        for axes in grid[0]:
-            axes.set_xlabel(to_typography(f"wanted stroke [{form.unit}]"))
-        grid[0, 0].set_ylabel(to_typography(f"stroke [{form.unit}]"))
-        grid[0, 1].set_ylabel(to_typography(f"stroke less wanted [{fine.unit}]"))
-        grid[0, 0].legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=3, borderaxespad=0.2)
+        for axes, label in zip(grid[0], (f"stroke [{form.unit}]", f"stroke less wanted [{fine.unit}]"), strict=True):
+            axes.set(xlabel=to_typography(f"wanted stroke [{form.unit}]"), ylabel=to_typography(label))
+        legend_above(grid[0, 0], 3)
     return figure

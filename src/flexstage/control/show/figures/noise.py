@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.control.noise import NoiseBudget
-from flexstage.control.show.figures.frequency import legend_of_lines, plain_ticks, thin_out
+from flexstage.control.show.figures.frequency import legend_above, legend_of_lines, look, plain_ticks, thin_out
 from flexstage.show.display import display_unit_of, format_value, to_typography
 from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.show.table import short_names
@@ -35,12 +35,9 @@ def noise_share_figure(found: NoiseBudget) -> Any:
             axes.text(
                 101.5, row, to_typography(format_value(float(np.sqrt(square)), unit, 3)), ha="left", va="center", fontsize=7.5, color=INK
             )
-        axes.set_xlim(0.0, 100.0)
-        axes.set_ylim(-0.6, len(total) - 0.4)
-        axes.set_yticks([])
+        axes.set(xlim=(0.0, 100.0), ylim=(-0.6, len(total) - 0.4), yticks=[], xlabel="share of the mean square [%]")
         axes.grid(axis="y", visible=False)
-        axes.set_xlabel("share of the mean square [%]")
-        axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=6, borderaxespad=0.1, handlelength=1.0, columnspacing=1.2)
+        legend_above(axes, 6)
     return figure
 
 
@@ -64,16 +61,12 @@ def _column(grid: Any, found: NoiseBudget, chosen: Sequence[int], unit: str) -> 
     form = display_unit_of(unit, float(np.max(summed, initial=0.0)))
     for index, column, total in zip(chosen, density.T, summed.T, strict=True):
         x, y = thin_out(found.frequencies, np.sqrt(column))
-        look = {"color": SERIES[index % 7], "linewidth": 1.0, "linestyle": (0, (4.0, 2.0)) if index % 2 else "-"}
-        grid[0].loglog(x, form.factor * np.maximum(y, 1e-300), label=names[index], **look)
+        grid[0].loglog(x, form.factor * np.maximum(y, 1e-300), linewidth=1.0, label=names[index], **look(index))
         x, y = thin_out(found.frequencies, total)
-        grid[1].semilogx(x, form.factor * y, **look)
+        grid[1].semilogx(x, form.factor * y, linewidth=1.0, **look(index))
     largest = form.factor * float(np.sqrt(np.max(density, initial=0.0)))
-    grid[0].set_ylim(1e-4 * largest, 3.0 * largest)
-    grid[0].set_ylabel(to_typography(f"density [{form.unit}/Hz^0.5]"))
-    grid[1].set_ylabel(to_typography(f"rms summed up [{form.unit}]"))
-    grid[1].set_ylim(0.0, None)
-    grid[1].set_xlabel("frequency [Hz]")
-    grid[1].set_xlim(float(found.frequencies[0]), float(found.frequencies[-1]))
+    grid[0].set(ylim=(1e-4 * largest, 3.0 * largest), ylabel=to_typography(f"density [{form.unit}/Hz^0.5]"))
+    span = float(found.frequencies[0]), float(found.frequencies[-1])
+    grid[1].set(ylim=(0.0, None), xlim=span, xlabel="frequency [Hz]", ylabel=to_typography(f"rms summed up [{form.unit}]"))
     grid[0].tick_params(labelbottom=False)
     plain_ticks(grid[0].xaxis, grid[1].xaxis, grid[0].yaxis)

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.show.figures.frequency import legend_of_lines, plain_ticks
+from flexstage.control.show.figures.frequency import legend_above, legend_of_lines, plain_ticks, thin_out
 from flexstage.control.simulation.result import Simulated
 from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, HALF, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
 _ACROSS = 3
-_POINTS = 320
 _OF_SIZE = 0.05
 _BAND, _SHOWN = 0.02, 2.5
 _FEW = 1.5
@@ -58,9 +57,9 @@ def _step(axes: Any, name: str, test: Simulated) -> None:
     true = test.reference - test.true_error
     for other, channel in enumerate(test.coordinates):
         if other != index and channel.unit == unit:
-            axes.plot(*curve(time, form.factor * true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
+            axes.plot(*thin_out(time, form.factor * true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
     axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--", label="wanted")
-    axes.plot(*curve(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2, label="true")
+    axes.plot(*thin_out(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2, label="true")
     axes.set_title(to_typography(f"{name} [{form.unit}]"), fontsize=7.5, loc="left")
     axes.tick_params(labelsize=6.5)
 
@@ -93,10 +92,9 @@ def error_figure(test: Simulated) -> Any:
             error = test.true_error[:, chosen]
             form = display_unit_of(unit, float(np.max(np.abs(error), initial=0.0)))
             for index, column in zip(chosen, error.T, strict=True):
-                axes.plot(*curve(scaled, form.factor * column), color=SERIES[count % 7], linewidth=0.9, label=test.coordinates[index].name)
+                axes.plot(scaled, form.factor * column, color=SERIES[count % 7], linewidth=0.9, label=test.coordinates[index].name)
                 count += 1
-            axes.set_ylabel(to_typography(f"error [{form.unit}]"))
-            axes.set_xlim(float(scaled[0]), float(scaled[-1]))
+            axes.set(ylabel=to_typography(f"error [{form.unit}]"), xlim=(float(scaled[0]), float(scaled[-1])))
         legend_of_lines(figure, grid[:, 0])
         grid[-1, 0].set_xlabel(noun)
     return figure
@@ -119,8 +117,7 @@ def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: 
                 axes.semilogy(range(len(rms)), form.factor * rms[:, index], color=SERIES[index % 7], linewidth=1.0, label=names[index])
                 if floor is not None:
                     axes.axhline(form.factor * float(floor[index]), color=SERIES[index % 7], linewidth=0.7, linestyle=":")
-            axes.set_ylabel(to_typography(f"rms error [{form.unit}]"))
-            axes.set_xlim(0.0, len(rms) - 1.0)
+            axes.set(ylabel=to_typography(f"rms error [{form.unit}]"), xlim=(0.0, len(rms) - 1.0))
             axes.xaxis.get_major_locator().set_params(integer=True)
             plain_ticks(axes.yaxis, steps=(1.0, 2.0, 5.0) if np.ptp(np.log10(rms[:, chosen])) < _FEW else (1.0,))
         legend_of_lines(figure, grid[:, 0], 6)
@@ -145,12 +142,12 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
     with style_context():
         figure = canvas(FULL * 0.62, _height(followed))
         plan = panels(figure, 1, 1, Margins(left=0.6, top=0.32))[0, 0]
-        plan.plot(*_decimate(factors * asked), color=MUTED, linewidth=0.9, label="commanded")
-        plan.plot(*_decimate(factors * followed), color=SERIES[0], linewidth=0.9, label=label)
+        plan.plot(*(factors * asked).T, color=MUTED, linewidth=0.9, label="commanded")
+        plan.plot(*(factors * followed).T, color=SERIES[0], linewidth=0.9, label=label)
         plan.set_aspect("equal", adjustable="datalim")
-        plan.set_xlabel(to_typography(f"{axes_shown[0]} [{forms[0].unit}]"))
-        plan.set_ylabel(to_typography(f"{axes_shown[1]} [{forms[1].unit}]"))
-        plan.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2)
+        x, y = (to_typography(f"{name} [{form.unit}]") for name, form in zip(axes_shown, forms, strict=True))
+        plan.set(xlabel=x, ylabel=y)
+        legend_above(plan, 2)
     return figure
 
 
@@ -172,27 +169,6 @@ def magnification(size: float, error: Array) -> float:
     wanted = max(_OF_SIZE * size / largest, 1.0)
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
-
-
-def curve(x: Array, y: Array) -> tuple[Array, Array]:
-    """A curve over even times with so few points as a picture can show: of each bin its least and its largest value.
-
-    >>> len(curve(np.arange(10000.0), np.zeros(10000))[0]) < 1000
-    True
-    """
-    if len(x) <= 2 * _POINTS:
-        return x, y
-    kept = {0, len(x) - 1}
-    for part in np.array_split(np.arange(len(x)), _POINTS):
-        kept |= {int(part[np.argmin(y[part])]), int(part[np.argmax(y[part])])}
-    places = np.array(sorted(kept))
-    return x[places], y[places]
-
-
-def _decimate(path: Array) -> tuple[Array, Array]:
-    """A path in plan with some thousand points."""
-    step = max(1, len(path) // 2500)
-    return path[::step, 0], path[::step, 1]
 
 
 def _clock(times: Array) -> tuple[Array, str]:

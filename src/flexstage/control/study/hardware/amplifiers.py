@@ -22,7 +22,6 @@ from flexstage.base.units.quantity import (
 )
 from flexstage.control.plant_models.electronics import AmplifierSettings, ChargeHold
 
-_MOST_BITS = 32
 _COUPLED, _LEFT = Bound(low=0.0, high=1.0, open_high=True), Bound(low=0.0, high=1.0)
 
 
@@ -58,7 +57,7 @@ class AmplifierSetup(AmplifierForm):
     current: Annotated[float, CURRENT, POSITIVE] | None = None
     slew: Annotated[float, SLEW, POSITIVE] | None = None
     noise: Annotated[float, VOLTAGE_NOISE, NOT_NEGATIVE] | None = None
-    bits: int | None = None
+    bits: Annotated[int, Bound(low=1.0, high=32.0)] | None = None
     current_noise: Annotated[float, CURRENT_NOISE, NOT_NEGATIVE] | None = None
 
     @property
@@ -72,8 +71,6 @@ class AmplifierSetup(AmplifierForm):
         """A bandwidth and a resistance are two ways to say the same; converters have bits."""
         if self.bandwidth is not None and self.resistance is not None:
             yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
-        if self.bits is not None and not 1 <= self.bits <= _MOST_BITS:
-            yield Finding("amplifier.bits", f"found {self.bits}", f"Give between 1 and {_MOST_BITS}")
 
 
 @dataclass(frozen=True)

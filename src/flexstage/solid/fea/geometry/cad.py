@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from netgen import occ
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.parts.body import Cylinder, Imported, Pierced, Sphere
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.draw import draw_form, move_solid
@@ -77,7 +77,7 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
     return replace(drawing, shape=cut_at_mirrors(drawing.shape, mirrors), mirrors=mirrors) if mirrors.axes else drawing
 
 
-@lru_cache(maxsize=1)
+@SESSION.keep(1)
 def mirrors_of(component: Component) -> Mirrors:
     """The planes of its axes, across y and z, that a component of one medium is symmetric about and can be cut at.
 
@@ -205,7 +205,7 @@ def region(piece: Piece, points: Array) -> Array:
     return np.max(np.maximum(np.abs(local) - half_extents(piece), 0.0), axis=1)
 
 
-@lru_cache(maxsize=KEPT)
+@SESSION.keep(KEPT)
 def half_extents(piece: Piece) -> Array:
     """Half sizes (3,) of a piece's bounding box in its own frame [m], drawn once.
 

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Sequence
-from pathlib import Path
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.storage.digest import digest
-from flexstage.base.storage.store import write
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Imported
 from flexstage.solid.fea.jobs.apart import contacts_apart
-from flexstage.solid.fea.jobs.cache import Cache, folder_of
+from flexstage.solid.fea.jobs.cache import SOUND, Cache, holds, keep
 from flexstage.solid.fea.jobs.remote import Pool
-from flexstage.solid.fea.jobs.store import versions
 from flexstage.solid.fea.solver.component import Component, Cut, components
 
 
@@ -37,12 +34,10 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None 
 
     Those with imported solids are not: their files may change.
     """
-    mark = None if cache is None or has_imports(mechanism) else _mark(mechanism, cache)
-    if mark is not None and mark.is_file():
-        return ()
-    (found,) = contacts_apart([mechanism], pool=pool)
-    if mark is not None:
-        _remember(mark, found)
+    known = cache is not None and _is_known(mechanism, cache)
+    (found,) = ((),) if known else contacts_apart([mechanism], pool=pool)
+    if cache is not None and not known:
+        _remember(mechanism, cache, found)
     return found
 
 
@@ -51,23 +46,24 @@ def check_together(mechanisms: Sequence[Mechanism], cache: Cache | None, pool: P
 
     >>> check_together((), None)
     """
-    marks = {} if cache is None else {_mark(each, cache): each for each in mechanisms if not has_imports(each)}
-    unknown = {mark: each for mark, each in marks.items() if not mark.is_file()}
-    if unknown:
+    unknown = {} if cache is None else {_key(each): each for each in mechanisms if not has_imports(each) and not _is_known(each, cache)}
+    if cache is not None and unknown:
         with contextlib.suppress(DesignError):
-            for mark, found in zip(unknown, contacts_apart(tuple(unknown.values()), pool=pool), strict=True):
-                _remember(mark, found)
+            for each, found in zip(unknown.values(), contacts_apart(tuple(unknown.values()), pool=pool), strict=True):
+                _remember(each, cache, found)
 
 
-def _remember(mark: Path, found: tuple[Finding, ...]) -> None:
-    if not found:
-        with contextlib.suppress(OSError, DesignError):  # it is checked again then
-            mark.parent.mkdir(parents=True, exist_ok=True)
-            write(mark, "")
+def _is_known(mechanism: Mechanism, cache: Cache) -> bool:
+    return not has_imports(mechanism) and holds(cache, _key(mechanism), SOUND)
 
 
-def _mark(mechanism: Mechanism, cache: Cache) -> Path:
-    return folder_of(cache) / f"{digest(mechanism, physics=True)[:32]}-{versions('geometry.contact').digest}.sound"
+def _remember(mechanism: Mechanism, cache: Cache, found: tuple[Finding, ...]) -> None:
+    if not (found or has_imports(mechanism)):
+        keep(cache, _key(mechanism), mechanism.name, None, SOUND, notice=lambda _finding: None)  # it is checked again then
+
+
+def _key(mechanism: Mechanism) -> str:
+    return digest(mechanism, physics=True)[:32]
 
 
 def has_imports(mechanism: Mechanism) -> bool:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from typing import Any
 
 from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
@@ -27,7 +27,7 @@ class _Drawing(Job):
         """The stage's name."""
         return self.mechanism.name or "stage"
 
-    def work(self, call: Call) -> bytes:
+    def work(self, call: Call) -> Any:
         """The file."""
         call.report(Stage.DRAWING, 0.0)
         from flexstage.solid.exchange.step import step
@@ -41,12 +41,12 @@ class _Checking(_Drawing):
 
     clearance: float
 
-    def work(self, call: Call) -> bytes:
-        """The findings as JSON."""
+    def work(self, call: Call) -> tuple[Finding, ...]:
+        """The findings."""
         call.report(Stage.DRAWING, 0.0)
         from flexstage.solid.fea.geometry.contact import contact_findings
 
-        return json.dumps([asdict(finding) for finding in contact_findings(self.mechanism, self.clearance)]).encode()
+        return contact_findings(self.mechanism, self.clearance)
 
 
 def contacts_apart(
@@ -56,8 +56,7 @@ def contacts_apart(
 
     Raises `DesignError` where that crashes or takes too long.
     """
-    found = _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
-    return [tuple(Finding(**item) for item in json.loads(data)) for data in found]
+    return _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
@@ -65,8 +64,8 @@ def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
     return _results_of([_Drawing(mechanism)], limits)[0]
 
 
-def _results_of(jobs: Sequence[_Drawing], limits: Limits, pool: Pool | None = None) -> list[bytes]:
+def _results_of(jobs: Sequence[_Drawing], limits: Limits, pool: Pool | None = None) -> list[Any]:
     require_installed()
-    results: dict[_Drawing, bytes] = {}
+    results: dict[_Drawing, Any] = {}
     work_all(jobs, results.__setitem__, limits, pool=pool)
     return [results[job] for job in jobs]

@@ -8,10 +8,11 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -20,22 +21,20 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
 from flexstage.base.storage.store import FOLDER_VARIABLE, cache_folder, write
 from flexstage.solid.fea.jobs.content import content
-from flexstage.solid.fea.jobs.store import from_bytes, versions
+from flexstage.solid.fea.jobs.store import from_bytes, program, to_bytes
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.fea.solver.component import Component
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of files in the cache: how their names end, what is in them, and the method whose code counts as their version."""
+    """A kind of files in the cache: how their names end, and what is in them."""
 
     suffix: str
     noun: str
-    method: str
 
 
-SUPERELEMENTS = Kind(".superelement", "superelement", "solver.reduce")
-HINGES = Kind(".hinge", "6x6", "hinges.hinge")
+SUPERELEMENTS, HINGES, SOUND = Kind(".superelement", "superelement"), Kind(".hinge", "6x6"), Kind(".sound", "mark of sound outlines")
 
 
 @dataclass(frozen=True)
@@ -49,12 +48,13 @@ class Cache(CheckedFields):
     limit: float = 4e9
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
-    """What the cache holds, a superelement, a 6x6 or nothing, and what is to be said about it."""
+Notice: TypeAlias = Callable[[Finding], None]
+"""Is called with what stops nothing: a file of the cache is damaged, or could not be kept."""
 
-    element: Any
-    notices: tuple[Finding, ...] = ()
+
+def warn(finding: Finding) -> None:
+    """Issue a finding as a Python warning."""
+    warnings.warn(str(finding), stacklevel=2)
 
 
 def folder_of(cache: Cache) -> Path:
@@ -63,9 +63,7 @@ def folder_of(cache: Cache) -> Path:
     >>> folder_of(Cache(Path("/tmp/superelements"))).name
     'superelements'
     """
-    if cache.folder is not None:
-        return cache.folder
-    return cache_folder()
+    return cache_folder() if cache.folder is None else cache.folder
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
@@ -83,28 +81,25 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
     return state.hexdigest()[:32]
 
 
-def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS) -> Found:
-    """Look a component or a hinge up. `where` names it in what is said about files that are damaged or of other versions.
+def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
+    """Return the superelement or the 6x6 of a key, `None` where there is none. `where` names it in the notice of a damaged file.
 
-    >>> find(Cache(Path("/nowhere")), "key", "lever").element is None
+    >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True
     """
     path = _path(cache, key, kind)
     try:
-        data = path.read_bytes()
+        outcome = from_bytes(path.read_bytes(), key)
     except FileNotFoundError:
-        return Found(None, _other_versions(path, key, where, kind))
+        return None
     except OSError as error:
-        return Found(None, (Finding(where, f"its {kind.noun} {path} cannot be read ({error.strerror})", _RECOMPUTED),))
-    outcome = from_bytes(data, key, versions(kind.method))
+        outcome = f"it cannot be read ({error.strerror})"
     if isinstance(outcome, str):
-        return Found(None, (Finding(where, f"its {kind.noun} {path} is not used: {outcome}", _RECOMPUTED),))
+        notice(Finding(where, f"its {kind.noun} {path} is not used: {outcome}", "It is computed again and replaced"))
+        return None
     with contextlib.suppress(OSError):
         os.utime(path)
-    return Found(outcome)
-
-
-_RECOMPUTED = "It is computed anew and replaced"
+    return outcome
 
 
 def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
@@ -116,13 +111,13 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
     return _path(cache, key, kind).is_file()
 
 
-def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEMENTS) -> tuple[Finding, ...]:
-    """Keep the bytes of a file, whole or not at all. Tells why it could not.
+def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
+    """Keep a superelement, a 6x6 or a mark in a file, whole or not at all.
 
-    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"")[0].where
-    'lever'
+    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", None, notice=lambda finding: print(finding.where))
+    lever
     """
-    path = _path(cache, key, kind)
+    path, data = _path(cache, key, kind), to_bytes(element, key)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _remove_old(cache, path.parent, len(data), kind)
@@ -131,8 +126,7 @@ def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEM
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
         what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
         advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
-        return (Finding(where, what, advice),)
-    return ()
+        notice(Finding(where, what, advice))
 
 
 def _remove_old(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
@@ -153,12 +147,4 @@ def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
 
 
 def _path(cache: Cache, key: str, kind: Kind) -> Path:
-    return folder_of(cache) / f"{key}-{versions(kind.method).digest}{kind.suffix}"
-
-
-def _other_versions(path: Path, key: str, where: str, kind: Kind) -> tuple[Finding, ...]:
-    others = len(list(path.parent.glob(f"{key}-*{kind.suffix}"))) if path.parent.is_dir() else 0
-    if not others:
-        return ()
-    what = f"the cache {path.parent} holds its {kind.noun} of other versions only ({others}), here is {versions(kind.method)}"
-    return (Finding(where, what, "It is computed anew; the others stay for the versions they belong to"),)
+    return folder_of(cache) / f"{key}-{hashlib.sha256(program().encode()).hexdigest()[:12]}{kind.suffix}"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
 from collections.abc import Iterator
 
 import numpy as np
 
+from flexstage.base.session import SESSION
 from flexstage.solid.fea.geometry.piece import form_digest
 from flexstage.solid.fea.solver.component import Component
 from flexstage.spatial.frame import Frame
@@ -16,7 +16,7 @@ KEPT = 512
 """Components whose content is kept at hand."""
 
 
-@functools.lru_cache(maxsize=KEPT)
+@SESSION.keep(KEPT)
 def content(component: Component) -> str:
     """Digest of a component's geometry, media and joints, in its own axes; equal for all copies of a unit.
 

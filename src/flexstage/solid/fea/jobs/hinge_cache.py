@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from flexstage.base.finding import DesignError, Finding
@@ -13,7 +13,6 @@ from flexstage.solid.fea.jobs.cache import HINGES
 from flexstage.solid.fea.jobs.memory import Counts, needed
 from flexstage.solid.fea.jobs.parts import Ways, obtain
 from flexstage.solid.fea.jobs.reducing import StoredJob
-from flexstage.solid.fea.jobs.store import to_bytes, versions
 from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy
 
@@ -42,7 +41,7 @@ class HingeJob(StoredJob):
 
     def seconds(self, _counts: Counts | None = None) -> float:
         """What hinges usually take [s]: several solves, the more the higher the order may rise."""
-        return _USUAL_SECONDS * (self.asked.orders[1] - 2)
+        return _USUAL_SECONDS * max(1, self.asked.orders[1] - 2)
 
     def needed(self, counts: Counts) -> float:
         """Memory of the first solves [bytes]; at higher orders as much is taken as there is."""
@@ -55,44 +54,33 @@ class HingeJob(StoredJob):
         what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, and {limit / 1e9:.3g} GB are there"
         return Finding(self.name, what, "Free memory, or let it have more")
 
-    def work(self, call: Call) -> bytes:
-        """Compute it; the 6x6 as stored. What is refused is told by the name it has for the user."""
-        from flexstage.solid.fea.hinges.hinge import Listener, hinge_compliance
+    def work(self, call: Call) -> HingeSolid:
+        """Compute it. What is refused is told by the name it has for the user."""
+        from flexstage.solid.fea.hinges.hinge import hinge_compliance
 
         try:
-            told = Listener(call.report, call.ask)
-            found = hinge_compliance(self.form.part, self.form.material, self.asked, told=told, roots=self.form.roots)
-            return to_bytes(found, self.key, versions(HINGES.method))
+            return hinge_compliance(self.form.part, self.form.material, self.asked, told=call, roots=self.form.roots)
         except DesignError as error:
             kind = f"the {self.form.part.kind}"
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None
 
 
-def hinges_from_cache(
-    forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways, notice: Callable[[Finding], None] | None = None
-) -> dict[str, HingeSolid]:
+def hinges_from_cache(forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
     """The 6x6 of hinges by name, from the cache, else computed in processes of their own, side by side, each kept as soon as it is done.
 
-    The solver is needed only for those that are not there. `notice` is told of a file that is damaged, and of one that could not be kept;
-    neither is fatal. Raises `DesignError` with all that could not be computed.
+    The solver is needed only for those that are not there. Raises `DesignError` with all that could not be computed.
 
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}
     """
     jobs = hinge_jobs(forms, asked)
-    found, notices = obtain(jobs, ways)
-    for each in notices:
-        (notice or _ignore)(each)
+    found = obtain(jobs, ways)
     return {job.name: found[job.key] for job in jobs}
 
 
 def hinge_jobs(forms: Mapping[str, HingeForm], asked: Accuracy) -> list[HingeJob]:
     """A job a hinge."""
     return [HingeJob(_key(form, asked), name, form, asked) for name, form in forms.items()]
-
-
-def _ignore(_finding: Finding) -> None:
-    """Nobody is told."""
 
 
 def _key(form: HingeForm, asked: Accuracy) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from enum import Enum
 
 
@@ -48,12 +48,3 @@ def fraction_done(stage: Stage, fraction: float) -> float:
     """
     stages = list(Stage)
     return sum(_SHARES[each] for each in stages[: stages.index(stage)]) + _SHARES[stage] * min(max(fraction, 0.0), 1.0)
-
-
-def overall(running: Mapping[str, tuple[Stage, float]], shares: Mapping[str, float], finished: Iterable[str]) -> float:
-    """Fraction of all components that is done, each with its share of the whole.
-
-    >>> round(overall({"lever": (Stage.MESHING, 1.0)}, {"lever": 0.5, "foot": 0.5}, ["foot"]), 9)
-    0.6
-    """
-    return sum(shares[name] for name in finished) + sum(shares[name] * fraction_done(*where) for name, where in running.items())

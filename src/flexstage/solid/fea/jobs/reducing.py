@@ -17,10 +17,10 @@ from flexstage.solid.fea.geometry.piece import Form, Piece, span, thinnest
 from flexstage.solid.fea.jobs.cache import SUPERELEMENTS, Kind
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.jobs.memory import Counts, mesh_seconds, needed, reduction_seconds, refusal
-from flexstage.solid.fea.jobs.store import to_bytes
 from flexstage.solid.fea.jobs.worker import Call, Job
 from flexstage.solid.fea.meshing.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, WARPS, Fineness, Hold, Reduction
 from flexstage.solid.fea.solver.component import Component
+from flexstage.solid.fea.solver.superelement import Superelement
 
 _PER_PIECE, _PER_FEWEST = 450.0, 12.0
 """Elements of usual meshes: so many a piece, and so many times the fewest."""
@@ -176,7 +176,7 @@ class Reduce(ComponentJob):
         more = "or make that part thicker or narrower; its theory needs no elements: flexstage analyse"
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
-    def work(self, call: Call) -> bytes:
+    def work(self, call: Call) -> Superelement:
         """Ask for what the surface alone takes, or one side of it, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
         from flexstage.solid.fea.geometry.cad import mirrors_of
         from flexstage.solid.fea.meshing.mesh import mesh_component
@@ -188,5 +188,4 @@ class Reduce(ComponentJob):
         size = mesh.mesh
         share = float(np.mean(mesh.finer))
         call.ask(Counts(size.nv, size.nedge, size.nface, size.ne, sides).enriched(share, self.reduction.fineness.order))
-        element = reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)
-        return to_bytes(element, self.key, call.made)
+        return reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)

@@ -19,11 +19,10 @@ from typing import Any, Generic, Self, TypeVar
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.processes.jobs import Heard, Word, Worker, cores
 from flexstage.base.processes.memory import available
-from flexstage.base.processes.progress import Progress, Step, time_left
+from flexstage.base.processes.progress import Progress, Step, seconds_left
 from flexstage.solid.fea.jobs.memory import Counts
-from flexstage.solid.fea.jobs.progress import Stage, overall
-from flexstage.solid.fea.jobs.store import versions
-from flexstage.solid.fea.jobs.worker import Job, Task, work
+from flexstage.solid.fea.jobs.progress import Stage, fraction_done
+from flexstage.solid.fea.jobs.worker import Job, work
 
 _MOST_WORKERS = 2
 _PAUSE = 0.02
@@ -104,7 +103,7 @@ class Pool:
 
 def work_all(
     jobs: Iterable[AnyJob],
-    done: Callable[[AnyJob, bytes], None],
+    done: Callable[[AnyJob, Any], None],
     limits: Limits,
     progress: Progress | None = None,
     pool: Pool | None = None,
@@ -178,15 +177,13 @@ class _Child(Generic[AnyJob]):
 class _Run(Generic[AnyJob]):
     """The jobs of one call: those to come, those running, those done."""
 
-    def __init__(
-        self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress, pool: Pool
-    ) -> None:
+    def __init__(self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, Any], None], limits: Limits, progress: Progress, pool: Pool) -> None:
         self.done, self.limits, self.progress, self.pool = done, limits, progress, pool
         self.waiting = [(job, 0, time.monotonic()) for job in jobs]
         self.children: list[_Child[AnyJob]] = []
         self.findings: list[Finding] = []
         self.planned = {job.mark: job.seconds() for job in jobs}
-        self.spent: dict[str, float] = {}
+        self.finished: list[str] = []
         self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
 
     def finish(self) -> None:
@@ -210,13 +207,12 @@ class _Run(Generic[AnyJob]):
 
     def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
         memory = available() if self.limits.memory is None else self.limits.memory
-        task = Task(job, attempt, memory, self.limits.seconds, versions())
         try:
             worker = self.pool.worker(job)
         except OSError as error:
             raise _refuse_start(job.name, error) from error
         self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
-        worker.ask(task)
+        worker.ask(job, attempt, memory, self.limits.seconds)
 
     def _hear(self) -> None:
         """Take in what the workers said, waiting a moment for it."""
@@ -269,7 +265,7 @@ class _Run(Generic[AnyJob]):
         self.pool.end(child.worker)
 
     def _leave(self, child: _Child[AnyJob]) -> None:
-        self.spent[child.job.mark] = time.monotonic() - child.begun
+        self.finished.append(child.job.mark)
         self.children.remove(child)
 
     def _permit(self) -> None:
@@ -294,18 +290,15 @@ class _Run(Generic[AnyJob]):
         now = time.monotonic()
         if text != self.text or now - self.told > _TELL_EVERY:
             self.text, self.told = text, now
-            self.progress(self._step(text, now))
+            self.fraction = max(self.fraction, self._fraction_done())
+            self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
 
-    def _step(self, text: str, now: float) -> Step:
-        """Where the jobs stand, those that have a mesh planned anew."""
+    def _fraction_done(self) -> float:
+        """Fraction of the time of all jobs, by what each usually takes; those that have a mesh are planned again."""
         self.planned |= {child.job.mark: child.job.seconds(child.counts) for child in self.children if child.stage in _MESHED}
-        whole = sum(self.planned.values())  # none where nothing is known of them, or every job fails at once
-        shares = {mark: seconds / whole if whole else 1.0 / len(self.planned) for mark, seconds in self.planned.items()}
-        stages = {child.job.mark: (child.stage, child.fraction) for child in self.children}
-        running = {child.job.mark: now - child.begun for child in self.children}
-        self.fraction = min(1.0, max(self.fraction, overall(stages, shares, self.spent)))
-        left = time_left([self.planned], self.spent, running, workers(self.limits))
-        return Step(text, self.fraction, left, dict(self.spent), running, dict(self.planned))
+        done = sum(self.planned[mark] for mark in self.finished)
+        done += sum(self.planned[child.job.mark] * fraction_done(child.stage, child.fraction) for child in self.children)
+        return done / sum(self.planned.values())
 
 
 def _failure_findings(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:

@@ -6,9 +6,8 @@ import functools
 import hashlib
 import io
 import json
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,73 +23,40 @@ from flexstage.solid.fea.solver.superelement import Skin, Superelement
 FORMAT = 1
 """To be raised when the form of the file changes."""
 
-_IMPORTED = re.compile(r"^\s*from flexstage\.solid\.fea\.([\w.]+) import", re.MULTILINE)
 _RECORDS = {record.__name__: record for record in (Superelement, Skin, HingeSolid, Finding)}
 
 
-@dataclass(frozen=True)
-class Versions:
-    """What made a superelement: form of the file, flexstage, NGSolve, and a digest of the code of the solid model."""
-
-    format: int
-    flexstage: str
-    solver: str
-    method: str
-
-    def __str__(self) -> str:
-        return f"flexstage {self.flexstage} ({self.method[:8]}) with NGSolve {self.solver}, format {self.format}"
-
-    @property
-    def digest(self) -> str:
-        """A short digest, for names of files."""
-        return hashlib.sha256(repr(self).encode()).hexdigest()[:12]
-
-
 @functools.cache
-def versions(method: str = "solver.reduce") -> Versions:
-    """The versions at work here. The code of a method counts, so that results of one that changed are never taken for new ones.
+def program() -> str:
+    """Return what computes here: flexstage with a digest of the code of its solid model, NGSolve, the form of the file.
 
-    >>> versions().format == FORMAT
+    Results of code that changed are never taken for new ones.
+
+    >>> program().endswith(f"with NGSolve {SOLVER_VERSION}, format {FORMAT}")
     True
     """
     state = hashlib.sha256()
-    for path in method_files(method):
+    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
         state.update(path.name.encode() + path.read_bytes())
-    return Versions(FORMAT, __version__, SOLVER_VERSION, state.hexdigest()[:16])
+    return f"flexstage {__version__} ({state.hexdigest()[:16]}) with NGSolve {SOLVER_VERSION}, format {FORMAT}"
 
 
-def method_files(method: str = "solver.reduce") -> tuple[Path, ...]:
-    """The files of the solid model that a method uses: its own, what that imports, and so on.
-
-    >>> {"draw.py", "mesh.py", "skin.py"} <= {path.name for path in method_files()}
-    True
-    """
-    folder = Path(__file__).parents[1]
-    found, waiting = dict[str, Path](), [method]
-    while waiting:
-        name = waiting.pop()
-        if name not in found:
-            found[name] = folder / f"{name.replace('.', '/')}.py"
-            waiting += _IMPORTED.findall(found[name].read_text(encoding="utf-8"))
-    return tuple(found[name] for name in sorted(found))
-
-
-def to_bytes(element: Superelement | HingeSolid, key: str, made: Versions) -> bytes:
-    """A superelement or a 6x6 as the bytes of a file, for the content `key` and the versions it was made by.
+def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
+    """A superelement, a 6x6 or nothing as the bytes of a file, for the content `key`.
 
     >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
-    >>> from_bytes(to_bytes(small, "key", versions()), "key").freedoms
+    >>> from_bytes(to_bytes(small, "key"), "key").freedoms
     3
     """
     arrays: dict[str, Array] = {}
     tree = _flatten(element, "", arrays)
     body = io.BytesIO()
     np.savez(body, allow_pickle=False, **{str(number): value for number, value in enumerate(arrays.values())})
-    head = {"what": f"flexstage {type(element).__name__.lower()}", "key": key, **_stamp(made), "tree": tree}
-    return _seal(head, body.getvalue())
+    head = {"what": f"flexstage {type(element).__name__.lower()}", "key": key, "made": program(), "tree": tree}
+    return json.dumps({**head, "checksum": _checksum(head, body.getvalue())}).encode() + b"\n" + body.getvalue()
 
 
-def from_bytes(data: bytes, key: str, made: Versions | None = None) -> Any:
+def from_bytes(data: bytes, key: str) -> Any:
     """What was `to_bytes` into a file's bytes; else, in words, what is wrong with them: damaged, of another version, of other content.
 
     >>> from_bytes(b"nonsense", "key")
@@ -104,21 +70,12 @@ def from_bytes(data: bytes, key: str, made: Versions | None = None) -> Any:
         return "it is damaged: it does not begin as such files do"
     if _checksum(head, body) != stated:
         return f"it is damaged: its {len(data):,} bytes do not have the checksum it states"
-    stamp = _stamp(made or versions())
-    if {name: head.get(name) for name in stamp} != stamp:
-        return f"it is of another version: flexstage {head.get('flexstage')} with NGSolve {head.get('solver')}, format {head.get('format')}"
+    if head.get("made") != program():
+        return f"it is of another version: {head.get('made')}"
     if head.get("key") != key:
         return "it holds something else"
     with np.load(io.BytesIO(body), allow_pickle=False) as arrays:
         return _build(head["tree"], arrays)
-
-
-def _stamp(made: Versions) -> dict[str, Any]:
-    return {field.name: getattr(made, field.name) for field in fields(made)}
-
-
-def _seal(head: Mapping[str, Any], body: bytes) -> bytes:
-    return json.dumps({**head, "checksum": _checksum(head, body)}).encode() + b"\n" + body
 
 
 def _checksum(head: Mapping[str, Any], body: bytes) -> str:

@@ -6,13 +6,13 @@ import faulthandler
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from flexstage.base.finding import Finding
 from flexstage.base.processes.jobs import Line, limit_memory
 from flexstage.solid.fea.jobs.install import require_solver
 from flexstage.solid.fea.jobs.memory import Counts
-from flexstage.solid.fea.jobs.progress import Report, Stage
-from flexstage.solid.fea.jobs.store import Versions
+from flexstage.solid.fea.jobs.progress import Report, Stage, silent
 
 _SLACK, _SHARE = 5e8, 1.2
 """What libraries take beyond a job's own memory [bytes], and how much more it may take than was planned with."""
@@ -29,14 +29,13 @@ class Call:
     `ask` waits until there is room for a mesh, expected or made.
     """
 
-    report: Report
-    ask: Callable[[Counts], None]
-    attempt: int
-    made: Versions
+    report: Report = silent
+    ask: Callable[[Counts], None] = lambda _counts: None
+    attempt: int = 0
 
 
 class Job(ABC):
-    """Work for a process of its own: a value that can be pickled, with a result in bytes."""
+    """Work for a process of its own: a value that can be pickled, with a result that can be."""
 
     attempts: int = 1
     """How many attempts at a mesh can be told apart by their number, so that one that takes the process down is followed by the next."""
@@ -65,7 +64,7 @@ class Job(ABC):
         return 0.0
 
     @abstractmethod
-    def work(self, call: Call) -> bytes:
+    def work(self, call: Call) -> Any:
         """Do it."""
 
     def needed(self, _counts: Counts) -> float:
@@ -77,19 +76,8 @@ class Job(ABC):
         return None
 
 
-@dataclass(frozen=True, eq=False)
-class Task:
-    """What a worker is told: the job, the attempt at its mesh to begin with, the memory [bytes] and time [s] it may take, who is asking."""
-
-    job: Job
-    attempt: int
-    memory: float
-    seconds: float
-    made: Versions
-
-
-def work(line: Line, task: Task) -> bytes:
-    """Do a task's job: stages and counts of meshes are told, and for room for each mesh it waits.
+def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> Any:
+    """Do a job within a memory [bytes] and a time [s]: report stages and counts of meshes, and wait for room for each mesh.
 
     Raises a `DesignError` that names the remedy if the solver does not load.
     """
@@ -101,10 +89,10 @@ def work(line: Line, task: Task) -> bytes:
     def report(stage: Stage, fraction: float) -> None:
         line.tell((stage, fraction))
 
-    limit_memory(_SHARE * task.memory + _SLACK)
-    faulthandler.dump_traceback_later(task.seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the caller be gone
+    limit_memory(_SHARE * memory + _SLACK)
+    faulthandler.dump_traceback_later(seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the caller be gone
     try:
-        return task.job.work(Call(report, ask, task.attempt, task.made))
+        return job.work(Call(report, ask, attempt))
     except (ImportError, OSError):
         require_solver()  # what did not load may be the solver
         raise

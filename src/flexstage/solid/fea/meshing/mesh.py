@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import Any
 
 import ngsolve
@@ -14,6 +13,7 @@ from netgen.meshing import MeshingParameters
 
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.cad import Cad, cad, cut_component, half_extents, region
 from flexstage.solid.fea.geometry.mirror import Mirrors
@@ -127,13 +127,13 @@ class _Subject:
         return _Subject(content(component), tuple(joint.name for joint in joints), by_symmetry, component)
 
 
-@lru_cache(maxsize=_AT_HAND)
+@SESSION.keep(_AT_HAND)
 def _drawing(subject: _Subject) -> Cad:
     whole = cad(subject.component)
     return cut_component(subject.component, whole) if subject.by_symmetry else whole
 
 
-@lru_cache(maxsize=_AT_HAND)
+@SESSION.keep(_AT_HAND)
 def _straight_mesh(subject: _Subject, fineness: Fineness, number: int) -> ngsolve.Mesh | str:
     """An attempt at a mesh, not curved yet; else what went wrong."""
     component, drawing = subject.component, _drawing(subject)

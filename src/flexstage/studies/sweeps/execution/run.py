@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import os
-import time
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,26 +16,23 @@ from filelock import FileLock, Timeout
 from flexstage.analysis.assessment.measures import platform_frequency
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, refuse, require
-from flexstage.base.number import Array
 from flexstage.base.processes import memory
-from flexstage.base.processes.jobs import cores
+from flexstage.base.processes.jobs import CallError, Line, cores, results
 from flexstage.base.processes.threads import one_thread
+from flexstage.base.storage.store import remove_leftovers
 from flexstage.studies.sweeps.definition import Study, name_findings
-from flexstage.studies.sweeps.execution.cost import Cost, sweep_cost
-from flexstage.studies.sweeps.execution.engine import engine_covers, engine_of
-from flexstage.studies.sweeps.execution.evaluate import nominal
-from flexstage.studies.sweeps.execution.gather import gather, require_room
+from flexstage.studies.sweeps.execution.engine import Engine, engine_covers, engine_of
+from flexstage.studies.sweeps.execution.evaluate import nominal, piece
 from flexstage.studies.sweeps.execution.store import (
     Results,
-    count_of,
     differences,
-    done_pieces,
     folder_of,
-    open_results,
+    gather,
     pending_pieces,
     read_results,
+    require_room,
+    write_piece,
 )
-from flexstage.studies.sweeps.execution.work import compute_in_processes
 
 PIECE = 256
 """Designs computed and kept together."""
@@ -43,22 +40,17 @@ LARGE, _MANY = 2048, 64
 """Designs together where each takes microseconds; so many pieces of the smaller size must a study have for it."""
 _COPIES = 4.0
 """How many times over all numbers of the results are in memory at once, where they are read and looked through."""
-_SELDOM = 20.0
-_LEAST = 5.0
 
 Progress = Callable[[int, int], None]
 """Told how many designs are there, and how many there will be."""
-Told = Callable[[Cost], None]
-"""Told what is to do before it begins, where anything is."""
 
 
 @dataclass(frozen=True)
 class Run(CheckedFields):
-    """How a study is run: `workers` processes (absent: one a core), `resume` what is there, or a Dask `scheduler`'s address."""
+    """How a study is run: `workers` processes (absent: one a core), `resume` what is there."""
 
     workers: int | None = None
     resume: bool = False
-    scheduler: str | None = None
 
 
 DEFAULT = Run()
@@ -66,13 +58,11 @@ DEFAULT = Run()
 
 @check_arguments
 @one_thread
-def sweep(
-    study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None, told: Told | None = None
-) -> Results:
+def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
-    Pieces (see `piece_size`) are written as they come and gathered into the file from time to time and at the end. Results do not depend
-    on the number of workers or on the order of pieces; the same study gives the same file. An interruption keeps what is there. Raises
+    Pieces (see `piece_size`) are written one by one and gathered into the file when the run ends. Results do not depend on
+    the number of workers or on the order of pieces; the same study gives the same file. An interruption keeps what is there. Raises
     `DesignError` for a file that exists and is not to be resumed, belongs to another study, or is in use; for measures that the
     design lacks; and for a disk that is full.
 
@@ -85,26 +75,18 @@ def sweep(
     """
     target = Path(path).absolute()
     size = piece_size(study)
-    _require_ready(target, study, how)
+    _require_ready(target, study, size, how)
     nominal(study)
     folder = folder_of(target)
     with _locked(folder):
-        done = _done_pieces(target, study, size)
+        done = gather(target, study, size)
         ranges = [(start, min(start + size, study.plan.designs)) for start in (np.flatnonzero(~done) * size).tolist()]
         _report_progress(progress, study, size * int(np.sum(done)))
-        require_room(target, study)
         try:
-            for count, _ in enumerate(
-                _gather_as_they_come(_pieces(study, ranges, folder, how, told), target, study, size), 1 + int(np.sum(done))
-            ):
+            for count, _ in enumerate(_pieces(study, ranges, folder, how.workers or cores()), 1 + int(np.sum(done))):
                 _report_progress(progress, study, size * count)
-        except BaseException:
-            with contextlib.suppress(DesignError):  # the first reason is told; pieces stay as they are
-                if pending_pieces(target):
-                    gather(target, study, size)
-            require_room(target, study)
-            raise
-        gather(target, study, size)
+        finally:
+            gather(target, study, size)
     return read_results(target)
 
 
@@ -140,17 +122,7 @@ def _report_progress(progress: Progress | None, study: Study, count: int) -> Non
         progress(min(count, study.plan.designs), study.plan.designs)
 
 
-def _done_pieces(target: Path, study: Study, size: int) -> Array:
-    """Which pieces are there; results that were cut in another way are refused."""
-    if target.exists():
-        file = open_results(target)
-        if count_of(file, "piece") != size or file.arrays["computed"].shape != (-(-study.plan.designs // size),):
-            what = f"its designs are kept in pieces of {count_of(file, 'piece')}, not {size}"
-            raise refuse(os.fspath(target), what, "Resume with the version of flexstage that wrote it, or name another file")
-    return done_pieces(target, size, study.plan.designs)
-
-
-def _require_ready(target: Path, study: Study, how: Run) -> None:
+def _require_ready(target: Path, study: Study, size: int, how: Run) -> None:
     """Refuse what cannot be begun."""
     require(name_findings(study))
     require_memory(study)
@@ -160,35 +132,29 @@ def _require_ready(target: Path, study: Study, how: Run) -> None:
     if there and not how.resume:
         raise refuse(os.fspath(target), "results are there already", "Resume (--resume), or name another file")
     if target.exists():
-        require(differences(target, study))
+        require(differences(target, study, size))
     if how.workers is not None and how.workers < 1:
         raise refuse("workers", f"found {how.workers}", "Give 1 or more")
+    require_room(target, study)
 
 
-def _pieces(study: Study, ranges: list[tuple[int, int]], folder: Path, how: Run, told: Told | None) -> Iterator[int]:
-    if not ranges:
-        return iter(())
-    engine = engine_of(study)
-    if told is not None:
-        told(sweep_cost(study, engine, ranges, how.workers or cores(), how.scheduler or ""))
-    if how.scheduler is not None:
-        from flexstage.studies.sweeps.execution.cluster import compute_on_cluster
+def _pieces(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[int]:
+    """Compute all ranges of designs into the folder, in processes of one engine; yields the first design of each once it is there."""
+    try:
+        for (start, _), _ in results(partial(_keep_piece, study, engine_of(study), folder), ranges, workers) if ranges else ():
+            yield start
+    except CallError as failed:
+        start, stop = failed.arguments
+        what, advice = ("processes died over them again and again", "Free memory and resume")
+        if isinstance(failed.error, DesignError):
+            what, advice = " ".join(str(failed.error).split()), "Mend it and resume"
+        elif failed.error is not None:
+            raise failed.error from None
+        raise refuse(f"designs {start} to {stop - 1}", what, advice) from None
 
-        return compute_on_cluster(study, engine, ranges, folder, how.scheduler)
-    return compute_in_processes(study, engine, ranges, folder, how.workers or cores())
 
-
-def _gather_as_they_come(pieces: Iterator[int], target: Path, study: Study, size: int) -> Iterator[int]:
-    """The pieces as they come, gathered seldom enough to cost a twentieth of the time."""
-    gather(target, study, size)
-    last, cost = time.monotonic(), 0.0
-    for start in pieces:
-        yield start
-        now = time.monotonic()
-        if now - last > max(_LEAST, _SELDOM * cost):
-            gather(target, study, size)
-            last = time.monotonic()
-            cost = last - now
+def _keep_piece(study: Study, engine: Engine, folder: Path, _line: Line, start: int, stop: int) -> None:
+    write_piece(folder, piece(study, start, stop, engine))
 
 
 @contextmanager
@@ -205,16 +171,10 @@ def _locked(folder: Path) -> Generator[None]:
         raise refuse(os.fspath(folder.parent), what, "Name a file in another folder") from None
     with lock:
         try:
-            _clear(folder)
+            remove_leftovers(folder)
             yield
         finally:
-            _clear(folder)
+            remove_leftovers(folder)
             Path(lock.lock_file).unlink(missing_ok=True)
             with contextlib.suppress(OSError):  # pieces that could not be gathered stay
                 folder.rmdir()
-
-
-def _clear(folder: Path) -> None:
-    """Remove what workers that were ended left half-written; nobody else writes here."""
-    for left in folder.glob(".*.part"):
-        left.unlink(missing_ok=True)

@@ -1,14 +1,15 @@
-"""Results of studies on disk: pieces written as they come, gathered into one HDF5 file that describes itself.
+"""Results of studies on disk: pieces written one by one, gathered into one HDF5 file that describes itself.
 
 `results.h5` holds what has been gathered; `results.h5.pieces/` the pieces since. Whatever is renamed is whole, so that the reader, which
-opens both, finds every computed design exactly once at any moment.
+opens both, finds every computed design exactly once at any moment. A file with the same designs has the same bytes, no matter how often
+the run was interrupted.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Generator, Iterator, Mapping
-from contextlib import contextmanager
+import shutil
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,14 +20,24 @@ import numpy as np
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
-from flexstage.base.storage.files import Attribute, Hdf, hdf
+from flexstage.base.storage.files import Attribute, Hdf, hdf, new_hdf
 from flexstage.base.storage.store import atomic_write
+from flexstage.base.version import __version__
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.execution.evaluate import Piece
 
 FORMAT = "flexstage results 1"
 _ATTEMPTS = 20
 _PIECES = ".pieces"
+_FRAME, _ENTRY = 100_000, 64
+"""What a results file takes at most besides its numbers and reasons [B]: its frame, the entry of a failure."""
+
+_ABOUT = (
+    "Designs of a study, one a row of variables and responses, in SI by their attributes names, units and of (what they are; variables in "
+    "1 may be factors on what the design states). NaN: not computed yet (computed says which pieces are, of piece rows each), or "
+    "failed (1 in failed, reasons in failures). study is the study's file, facts what the numbers depend on, made what computed them. "
+    "In Python: flexstage.studies.sweeps.execution.store.read_results, then to_xarray() or to_pandas()."
+)
 
 
 @dataclass(frozen=True)
@@ -124,36 +135,14 @@ def read_piece(path: Path) -> Piece:
     >>> found.start, found.responses.shape, found.failures
     (256, (2, 3), {1: 'too thin'})
     """
-    with _load(path) as stored:
-        return Piece(int(path.stem), stored["variables"], stored["responses"], _failures(stored), str(stored["made"]))
-
-
-def read_failures(path: Path) -> dict[int, str]:
-    """The failures alone of a piece: reasons by row.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as place:
-    ...     read_failures(write_piece(Path(place), Piece(256, np.ones((2, 1)), np.ones((2, 3)), {1: "too thin"})))
-    {1: 'too thin'}
-    """
-    with _load(path) as stored:
-        return _failures(stored)
-
-
-@contextmanager
-def _load(path: Path) -> Generator[Any]:
-    """A piece's arrays. Raises `FileNotFoundError` where it is gone, `DesignError` for what is none."""
     try:
         with np.load(path) as stored:
-            yield stored
+            failures = dict(zip(stored["rows"].tolist(), stored["reasons"].tolist(), strict=True))
+            return Piece(int(path.stem), stored["variables"], stored["responses"], failures, str(stored["made"]))
     except FileNotFoundError:
         raise
     except (OSError, ValueError, KeyError, EOFError, BadZipFile):
         raise refuse(os.fspath(path), "it is no piece of results, or damaged", "Take it away and resume: it is computed again") from None
-
-
-def _failures(stored: Any) -> dict[int, str]:
-    return dict(zip(stored["rows"].tolist(), stored["reasons"].tolist(), strict=True))
 
 
 def pending_pieces(path: Path) -> dict[int, Path]:
@@ -175,30 +164,6 @@ def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], t
     """
     names = tuple(each.name for each in study.variables), tuple(study.columns)
     return names, (tuple(each.quantity.si for each in study.variables), tuple(each.quantity.si for each in study.columns.values()))
-
-
-def done_pieces(path: Path, size: int, designs: int) -> Array:
-    """Which pieces (k,) of `size` designs are there already, gathered or waiting.
-
-    >>> done_pieces(Path("nowhere/results.h5"), 256, 1000).tolist()
-    [False, False, False, False]
-    """
-    done = gathered_pieces(path)
-    done = done if len(done) else np.zeros(-(-designs // size), dtype=bool)
-    for start in pending_pieces(path):
-        done[start // size] = True
-    return done
-
-
-def gathered_pieces(path: Path) -> Array:
-    """Which pieces (k,) the results file holds; none (0,) where there is no file.
-
-    >>> gathered_pieces(Path("nowhere/results.h5")).tolist()
-    []
-    """
-    if not path.exists():
-        return np.zeros(0, dtype=bool)
-    return open_results(path).read("computed").astype(bool)
 
 
 def open_results(path: Path) -> Hdf:
@@ -270,57 +235,143 @@ def read_results(path: str | os.PathLike[str]) -> Results:
     raise refuse(where, "its pieces are gathered faster than they can be read", "Try again")
 
 
-def _read(file: Hdf, pieces: list[Path]) -> Results:
-    size, planned = (count_of(file, key) for key in ("piece", "planned"))
-    done = file.read("computed").astype(bool)
-    more = [found for found in map(read_piece, pieces) if not done[found.start // size]]
-    there = np.repeat(done, size)[:planned]
-    for found in more:
-        there[found.start : found.start + len(found.variables)] = True
-    designs = np.flatnonzero(there)
-    failures = dict(read_stored_failures(file))
-    failures |= {found.start + row: reason for found in more for row, reason in found.failures.items()}
+@dataclass(frozen=True, eq=False)
+class _Stored:
+    """All planned designs, NaN where not computed; which pieces (k,) of `size` designs are `computed`; failures by design number."""
+
+    size: int
+    variables: Array
+    responses: Array
+    computed: Array
+    failures: dict[int, str]
+    made: set[str]
+
+    def add(self, pieces: Iterable[Piece]) -> None:
+        """Add the pieces that are not there yet."""
+        for each in pieces:
+            if not self.computed[each.start // self.size]:
+                rows = slice(each.start, each.start + len(each.variables))
+                self.variables[rows], self.responses[rows] = each.variables, each.responses
+                self.computed[each.start // self.size] = True
+                self.failures.update((each.start + row, reason) for row, reason in each.failures.items())
+                self.made.add(each.made)
+
+
+def _stored(file: Hdf) -> _Stored:
+    variables, responses = (file.read(name) for name in ("variables", "responses"))
+    failures = dict[int, str]()
+    if file.arrays["failures"].shape[0]:
+        failures = dict(zip(file.read("failures", column="design").tolist(), file.texts("failures", "reason"), strict=True))
+    made = file.attributes.get("made", ())
+    computed = file.read("computed").astype(bool)
+    return _Stored(_count(file, "piece"), variables, responses, computed, failures, set(made if isinstance(made, tuple) else (str(made),)))
+
+
+def _empty(study: Study, size: int) -> _Stored:
+    designs = study.plan.designs
+    variables, responses = (np.full((designs, len(names)), np.nan) for names in columns_of(study)[0])
+    return _Stored(size, variables, responses, np.zeros(-(-designs // size), dtype=bool), {}, set())
+
+
+def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
+    stored, planned = _stored(file), _count(file, "planned")
+    stored.add(map(read_piece, pieces))
+    there = np.repeat(stored.computed, stored.size)[:planned]
     return Results(
-        designs,
-        _table(file.read("variables"), [(found.start, found.variables) for found in more], there),
-        _table(file.read("responses"), [(found.start, found.responses) for found in more], there),
-        dict(sorted(failures.items())),
+        np.flatnonzero(there),
+        stored.variables[there],
+        stored.responses[there],
+        dict(sorted(stored.failures.items())),
         names=(_labels(file, "variables", "names"), _labels(file, "responses", "names")),
         units=(_labels(file, "variables", "units"), _labels(file, "responses", "units")),
         planned=planned,
         facts=_facts(file),
         text=str(file.attributes["study"]),
-        made=tuple(sorted({*provenance(file), *(found.made for found in more)})),
+        made=tuple(sorted(stored.made)),
     )
 
 
-def count_of(file: Hdf, key: str) -> int:
-    """A number of designs that results state: `planned`, or those of a `piece`."""
+def gather(path: Path, study: Study, size: int) -> Array:
+    """Write the results file again with all pieces of `size` designs there are, and remove them; which pieces (k,) it holds now.
+
+    Raises `DesignError` where the disk refuses; then file and pieces are as they were.
+
+    >>> import tempfile
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> with tempfile.TemporaryDirectory() as place:
+    ...     gather(Path(place, "results.h5"), neck_study(), 256).tolist()
+    ...     read_results(Path(place, "results.h5")).complete
+    [False]
+    False
+    """
+    pieces = pending_pieces(path)
+    if path.exists() and not pieces:
+        return open_results(path).read("computed").astype(bool)
+    stored = _stored(open_results(path)) if path.exists() else _empty(study, size)
+    stored.add(map(read_piece, pieces.values()))
+    reasons = sum(len(reason.encode()) + _ENTRY for reason in stored.failures.values())
+    with atomic_write(path) as place, new_hdf(place, file_size(study) + reasons) as file:
+        _write(file, stored, study)
+    for each in pieces.values():
+        each.unlink(missing_ok=True)
+    return stored.computed
+
+
+def _write(file: Any, stored: _Stored, study: Study) -> None:
+    """The whole file: numbers with names and units, and what the study was."""
+    import h5py
+
+    names, units = columns_of(study)
+    whole = {"format": FORMAT, "study": study.text, "version": __version__, "about": _ABOUT}
+    file.attrs.update({**whole, "planned": study.plan.designs, "piece": stored.size, "made": sorted(stored.made)})
+    file.create_group("facts", track_order=True).attrs.update(study.facts)
+    about = {
+        "address": [", ".join(each.addresses) for each in study.variables],
+        "measure": [f"{each.key} at {each.point}" for each in study.columns.values()],
+    }
+    tables = zip(("variables", "responses"), (stored.variables, stored.responses), names, units, about.items(), strict=True)
+    for name, values, columns, own, (key, texts) in tables:
+        data = file.create_dataset(name, values.shape, "f8", fillvalue=np.nan)
+        if stored.computed.any():
+            data[:] = values
+        data.attrs.update({"names": columns, "units": own, key: texts})
+    failed = np.zeros(study.plan.designs, dtype=np.uint8)
+    failed[list(stored.failures)] = 1
+    file["failed"], file["computed"] = failed, stored.computed.astype(np.uint8)
+    kind = np.dtype([("design", "i8"), ("reason", h5py.string_dtype())])
+    file["failures"] = np.array(sorted(stored.failures.items()), dtype=kind)
+
+
+def require_room(path: Path, study: Study) -> None:
+    """Raise `DesignError` where the disk has no room for a study's results: the file, and its pieces until they are gathered.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> require_room(Path("results.h5").absolute(), neck_study())
+    """
+    whole = file_size(study)
+    there = path.stat().st_size if path.exists() else 0
+    missing, free = 2 * whole - min(there, whole), shutil.disk_usage(path.parent).free
+    if free < missing:
+        what = f"the results need {missing / 1e6:.4g} MB more while they are gathered, {free / 1e6:.4g} MB are free"
+        raise refuse(os.fspath(path.parent), what, "Free space and resume (--resume), or name a file elsewhere")
+
+
+def file_size(study: Study) -> int:
+    """Size of a study's results file [B] at most, reasons of failures aside.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> file_size(neck_study(2_000_000)) - file_size(neck_study(1_000_000))
+    17000000
+    """
+    return study.plan.designs * (8 * sum(map(len, columns_of(study)[0])) + 1) + _FRAME + 2 * len(study.text)
+
+
+def _count(file: Hdf, key: str) -> int:
     return int(float(str(file.attributes[key])))
-
-
-def provenance(file: Hdf) -> tuple[str, ...]:
-    """What computed results, one text each."""
-    made = file.attributes.get("made", ())
-    return made if isinstance(made, tuple) else (str(made),)
-
-
-def read_stored_failures(file: Hdf) -> list[tuple[int, str]]:
-    """Failures by design number, with their reasons."""
-    if not file.arrays["failures"].shape[0]:
-        return []
-    return list(zip(file.read("failures", column="design").tolist(), file.texts("failures", "reason"), strict=True))
 
 
 def _facts(file: Hdf) -> dict[str, str]:
     return {key: str(value) for key, value in file.groups["facts"].items()}
-
-
-def _table(values: Array, more: list[tuple[int, Array]], there: Array) -> Array:
-    """All designs that are there, in order of their numbers."""
-    for start, rows in more:
-        values[start : start + len(rows)] = rows
-    return values if there.all() else values[there]
 
 
 def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
@@ -328,21 +379,21 @@ def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
     return found if isinstance(found, tuple) else (str(found),)
 
 
-def differences(path: Path, study: Study) -> Iterator[Finding]:
-    """How the study that a results file belongs to differs from this one.
+def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
+    """How the study that a results file belongs to differs from this one, in pieces of `size` designs.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
-    >>> from flexstage.studies.sweeps.execution.gather import gather
     >>> with tempfile.TemporaryDirectory() as place:
     ...     path = Path(place, "results.h5")
-    ...     gather(path, neck_study(), 256)
-    ...     [each.what.partition(",")[0] for each in differences(path, neck_study(designs=8))]
+    ...     done = gather(path, neck_study(), 256)
+    ...     [each.what.partition(",")[0] for each in differences(path, neck_study(designs=8), 256)]
     ['plan was sampling sobol']
     """
-    before = _facts(open_results(path))
-    now = study.facts
-    for key in [*before, *(key for key in now if key not in before)]:
+    file = open_results(path)
+    before = {**_facts(file), "piece": str(_count(file, "piece"))}
+    now = {**study.facts, "piece": str(size)}
+    for key in dict.fromkeys((*before, *now)):
         if before.get(key) != now.get(key):
             what = f"{key} was {before.get(key, 'absent')} and is {now.get(key, 'absent')}"
             yield Finding(os.fspath(path), what, "Resume with the study as it was, or name another file")

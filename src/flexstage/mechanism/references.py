@@ -1,0 +1,75 @@
+"""Names by which the entries of a description refer to one another, told by the fields that hold them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+from flexstage.base.number import Table
+from flexstage.base.storage.digest import Description
+
+SECTIONS = {
+    "material": "materials",
+    "counter": "materials",
+    "replaces": "parts",
+    "part": "parts",
+    "unit": "units",
+    "like": "units",
+    "gauge": "sensors",
+}
+"""Section of the entries that a field of this name refers to."""
+BODIES = ("body", "base", "of", "joins")
+"""Fields that refer to bodies."""
+FILES = ("file", "stiffness_file", "mass_file", "damping_file")
+"""Fields of parts and outlines that name files."""
+
+
+def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
+    """Yield the names of materials, parts, units and sensors in a value at `where`: address, section, name.
+
+    >>> from flexstage.parts.notch import Notch
+    >>> from flexstage.parts.profile import Circular
+    >>> list(references(Notch("steel", 1e-3, 1e-2, Circular(5e-3)), "parts.notch"))
+    [('parts.notch.material', 'materials', 'steel')]
+    """
+    if isinstance(value, Mapping):
+        for name, item in value.items():
+            yield from references(item, f"{where}.{name}")
+    elif isinstance(value, Description):
+        for name in (each.name for each in fields(value)):  # type: ignore[arg-type]
+            item = getattr(value, name)
+            if isinstance(item, str) and name in SECTIONS and (item or name != "replaces"):
+                yield f"{where}.{name}", SECTIONS[name], item
+            elif isinstance(item, (Table, Description)):
+                yield from references(item, f"{where}.{name}")
+
+
+def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str]) -> Any:
+    """Return a value with `change(field, text)` in the place of each text in a field of these names; without any, the value itself.
+
+    >>> from flexstage.mechanism.mechanism import Link
+    >>> renamed(Link(("ground", "platform"), "leaf"), BODIES, lambda field, name: f"fine/{name}").joins
+    ('fine/ground', 'fine/platform')
+    """
+    return transformed(value, lambda field, leaf: change(field, leaf) if field in names and leaf and isinstance(leaf, str) else leaf)
+
+
+def transformed(value: Any, change: Callable[[str, Any], Any], field: str = "") -> Any:
+    """Return a value with `change(field, leaf)` in the place of all that it is made of in the end; what stays is kept as it is.
+
+    >>> transformed((1.0, (2.0, 3.0)), lambda _, number: 2.0 * number)
+    (2.0, (4.0, 6.0))
+    """
+    if isinstance(value, Description):
+        own = {each.name: getattr(value, each.name) for each in fields(value) if each.init}  # type: ignore[arg-type]
+        new = {name: transformed(item, change, name) for name, item in own.items()}
+        new = {name: item for name, item in new.items() if item is not own[name]}
+        return replace(value, **new) if new else value  # type: ignore[type-var]
+    if isinstance(value, Table):
+        entries = {key: transformed(item, change, field) for key, item in value.items()}
+        return Table(entries) if any(entries[key] is not item for key, item in value.items()) else value
+    if isinstance(value, tuple):
+        items = tuple(transformed(item, change, field) for item in value)
+        return items if any(item is not old for item, old in zip(items, value, strict=True)) else value
+    return change(field, value)
