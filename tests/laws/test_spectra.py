@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
+from flexstage.experiment.progress import followed
 from flexstage.experiment.records.record import Channel, InMemory, Record, Role, in_memory
 from flexstage.experiment.spectral import cross_spectra as module
 from flexstage.experiment.spectral.cross_spectra import Segments, Window, pool, spectra
@@ -166,7 +167,8 @@ class _Counted:
 def test_a_long_record_is_read_in_pieces():
     long = Record((Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)), 20_000.0, _Counted(6_000_000))
     shares: list[float] = []
-    found = spectra(long, Segments(0.5, overlap=0.0), shares.append)
+    with followed(lambda _, share: shares.append(share)):
+        found = spectra(long, Segments(0.5, overlap=0.0))
     assert found.averages == 600
     assert shares == sorted(shares)
     assert shares[-1] == 1.0

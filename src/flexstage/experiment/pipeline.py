@@ -131,18 +131,9 @@ def _sound_responses(responses: Responses, accept_faults: frozenset[FaultToleran
     dropped = {fault.channel for fault in faults if fault.kind is FaultTolerance.NAMES}
     if responses.coherence is not None:
         responses = replace(responses, coherence=np.clip(np.nan_to_num(responses.coherence), 0.0, 1.0))
-    if not dropped:
-        return responses
-    rows = [index for index, channel in enumerate(responses.outputs) if channel.name not in dropped]
-    columns = [index for index, channel in enumerate(responses.inputs) if channel.name not in dropped]
-    chosen = np.ix_(range(len(responses.frequencies)), rows, columns)
-    return replace(
-        responses,
-        outputs=tuple(responses.outputs[index] for index in rows),
-        inputs=tuple(responses.inputs[index] for index in columns),
-        values=responses.values[chosen],
-        coherence=None if responses.coherence is None else responses.coherence[chosen],
-    )
+    sides = responses.outputs, responses.inputs
+    rows, columns = ([index for index, channel in enumerate(side) if channel.name not in dropped] for side in sides)
+    return responses.select(rows, columns)
 
 
 def _mixed_kinds(contents: Sequence[Record | Responses]) -> list[Finding]:

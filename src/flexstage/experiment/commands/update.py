@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.loaded.standing import standing
 from flexstage.base.finding import refuse
 from flexstage.base.units.quantity import RATIO
@@ -18,7 +19,6 @@ from flexstage.experiment.updating.free import DEFAULT, Prior
 from flexstage.experiment.updating.free import free as free_numbers
 from flexstage.experiment.updating.tables import update_tables
 from flexstage.experiment.updating.text import updated_text
-from flexstage.experiment.virtual_rig.plan import highest_mode
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.models.theory import Model
@@ -65,7 +65,7 @@ def update(  # noqa: PLR0913 (its options)
     chosen = names(parameters)
     free_numbers(mechanism, chosen, known)  # refused before the records are read
     model = standing(mechanism)
-    seen = identify_records(record, texts, model, highest_mode(mechanism, model))
+    seen = identify_records(record, texts, model, platform_modes(mechanism, model).highest)
     found = updating.update(mechanism, seen.found, chosen, known)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for warning in found.data_warnings[len(seen.found.data_warnings) :]:

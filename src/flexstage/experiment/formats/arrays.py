@@ -282,28 +282,23 @@ def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | Non
 def _channels(contents: Contents, axes: list[tuple[Variable, int]], arrays: Arrays) -> tuple[Channel, ...]:
     widths = [int(np.prod(variable.shape)) // variable.shape[axis] for variable, axis in axes]
     variables = [variable for variable, _ in axes]
-    total = sum(widths)
-    names = _texts_by_channel(contents, "names", arrays.names, variables, widths) or ("",) * total
-    names = tuple(name or own for name, own in zip(names, _own_names(variables, widths), strict=True))
-    units = _texts_by_channel(contents, "units", arrays.units, variables, widths) or ("",) * total
-    roles = _texts_by_channel(contents, "roles", ("roles",), variables, widths) or ("",) * total
+    names = _texts_by_channel(contents, "names", arrays.names, variables, widths)
+    units = _texts_by_channel(contents, "units", arrays.units, variables, widths)
+    roles = _texts_by_channel(contents, "roles", ("roles",), variables, widths)
+    named = number_names(name or own for name, own in zip(names, _own_names(variables, widths), strict=True))
     known = {role.value: role for role in Role}
-    triples = zip(number_names(names), units, roles, strict=True)
+    triples = zip(named, units, roles, strict=True)
     return tuple(Channel(name, plain_unit(unit), known.get(role, Role.UNKNOWN)) for name, unit, role in triples)
 
 
 def _texts_by_channel(
     contents: Contents, kind: str, names: tuple[str, ...], variables: list[Variable], widths: list[int]
 ) -> tuple[str, ...]:
-    """A text a channel: of one list in the file, or of the attributes of all arrays; empty where there is neither."""
-    total = sum(widths)
-    found = contents.texts(*names)
-    if not found:
-        own = [_texts(variable.attributes.get(kind, ())) for variable in variables]
-        found = tuple(text for each, width in zip(own, widths, strict=True) for text in (each or ("",) * width))
-        found = found if any(own) else ()
-    if found and len(found) != total:
-        what = f"its {kind} are {len(found)} ({', '.join(found[:6])}), its channels {total}"
+    """A text a channel: of one list in the file, or of the attributes of its array; an empty one where there is neither."""
+    own = [_texts(variable.attributes.get(kind, ())) for variable in variables]
+    found = contents.texts(*names) or tuple(text for each, width in zip(own, widths, strict=True) for text in (each or ("",) * width))
+    if len(found) != sum(widths):
+        what = f"its {kind} are {len(found)} ({', '.join(found[:6])}), its channels {sum(widths)}"
         raise refuse(contents.where, what, f'Name the list that is meant (array "{kind}=...")')
     return found
 
@@ -410,23 +405,20 @@ def _not_finite(where: str, values: Array, outputs: tuple[Channel, ...]) -> Iter
 
 def _select(responses: Responses, options: Options) -> Responses:
     """The responses with units as the user says; only the channels that count."""
+    count = len(responses.outputs)
     whole = assign((*responses.outputs, *responses.inputs), Options(units=options.units), responses.source)
-    outputs, inputs = whole[: len(responses.outputs)], whole[len(responses.outputs) :]
-    rows, columns = _positions(outputs, options.outputs), _positions(inputs, options.inputs)
-    sides = (("outputs", rows, outputs, options.outputs), ("inputs", columns, inputs, options.inputs))
+    sides = (("outputs", whole[:count], options.outputs), ("inputs", whole[count:], options.inputs))
+    rows, columns = (_positions(known, asked) for _, known, asked in sides)
     require(
         Finding(
             f"{responses.source}: {kind}",
             f"none of {', '.join(each.name for each in known)} is called {', '.join(asked)}",
             "Check the names",
         )
-        for kind, left, known, asked in sides
-        if not left
+        for kind, known, asked in sides
+        if not _positions(known, asked)
     )
-    coherence = None if responses.coherence is None else responses.coherence[:, rows][:, :, columns]
-    values = responses.values[:, rows][:, :, columns]
-    kept = tuple(outputs[row] for row in rows), tuple(inputs[column] for column in columns)
-    return replace(responses, outputs=kept[0], inputs=kept[1], values=values, coherence=coherence)
+    return replace(responses, outputs=whole[:count], inputs=whole[count:]).select(rows, columns)
 
 
 def _positions(channels: tuple[Channel, ...], patterns: tuple[str, ...]) -> list[int]:

@@ -7,7 +7,7 @@ the units their channels state, bit by bit as the file has them.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Annotated, Protocol
@@ -271,6 +271,17 @@ class Responses(InNotebook, CheckedFields):
         ratios = ratio_units(tuple(channel.unit for channel in self.outputs), tuple(columns))
         stated = ((row, [channel.unit and unit for unit in columns]) for row, channel in zip(ratios, self.outputs, strict=True))
         return tuple(tuple(ratio if known else "" for ratio, known in zip(row, both, strict=True)) for row, both in stated)
+
+    def select(self, rows: Sequence[int], columns: Sequence[int]) -> Responses:
+        """The responses of the outputs and to the inputs of these numbers alone."""
+        chosen = np.ix_(range(len(self.frequencies)), rows, columns)
+        return replace(
+            self,
+            outputs=tuple(self.outputs[row] for row in rows),
+            inputs=tuple(self.inputs[column] for column in columns),
+            values=self.values[chosen],
+            coherence=None if self.coherence is None else self.coherence[chosen],
+        )
 
     def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
         """One entry over frequency, complex (f,)."""

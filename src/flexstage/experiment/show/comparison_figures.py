@@ -42,16 +42,11 @@ def _bars(axes: Any, series: list[_Series], rows: tuple[ComparedMode, ...]) -> N
         places = np.arange(len(values)) + width * (number - 0.5 * (len(series) - 1))
         known = [index for index, value in enumerate(values) if value is not None]
         heights = [value for value in values if value is not None]
-        axes.bar(places[known], heights, 0.92 * width, color=colour, label=name)
-        tops = np.array(heights)
-        if name == "experiment":
-            seen = [row.experiment.frequency_interval for row in rows if row.experiment is not None]
-            whiskers = np.abs(np.array(seen).reshape(-1, 2).T - np.array(heights))
-            axes.errorbar(places[known], heights, yerr=whiskers, fmt="none", ecolor=INK, elinewidth=0.8, capsize=1.5)
-            tops = tops + whiskers[1]
-        for index, height, top in zip(known, heights, tops, strict=True):
-            above = {"xytext": (0.0, 1.5), "textcoords": "offset points", "ha": "center", "va": "bottom"}
-            axes.annotate(f"{height:.1f}", (places[index], top), fontsize=5.5, color=INK, **above)
+        seen = [row.experiment.frequency_interval for row in rows if row.experiment is not None] if name == "experiment" else []
+        whiskers = np.abs(np.array(seen).T - np.array(heights)) if seen else None
+        look = {"color": colour, "label": name, "error_kw": {"ecolor": INK, "elinewidth": 0.8, "capsize": 1.5}}
+        bars = axes.bar(places[known], heights, 0.92 * width, yerr=whiskers, **look)
+        axes.bar_label(bars, fmt="%.1f", padding=1.5, fontsize=5.5, color=INK)
     axes.set_ylabel("frequency [Hz]")
     axes.margins(y=0.12)
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=3, handlelength=1.2, borderaxespad=0.2)

@@ -82,8 +82,7 @@ class Spectra:
     def band(self, low: float, high: float) -> Spectra:
         """The lines from `low` to `high` in Hz, both included."""
         kept = (self.frequencies >= low) & (self.frequencies <= high)
-        lines = (self.frequencies[kept], self.inputs, self.outputs, self.xx[kept], self.yx[kept], self.yy[kept])
-        return Spectra(*lines, averages=self.averages, independent=self.independent, segments=self.segments)
+        return replace(self, **{name: getattr(self, name)[kept] for name in ("frequencies", "xx", "yx", "yy")})
 
 
 @check_arguments

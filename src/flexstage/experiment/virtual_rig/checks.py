@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from flexstage.analysis.complete import platform_modes
 from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.experiment.virtual_rig.chain import Chain
 from flexstage.experiment.virtual_rig.inputs import InputQuantity
-from flexstage.experiment.virtual_rig.plan import Plan, drivable_actuators, highest_mode
+from flexstage.experiment.virtual_rig.plan import Plan, drivable_actuators
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.checks.value import number_findings
@@ -54,7 +55,7 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
 def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
     if setup.seed < 0:
         yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
-    highest = highest_mode(mechanism, model)
+    highest = platform_modes(mechanism, model).highest
     if setup.rate is not None and 0.0 < setup.rate < 2.0 * highest:
         what = f"the sampling rate of {setup.rate:g} Hz is below twice the highest platform mode, {highest:.4g} Hz"
         yield Finding("rate", what, f"Sample at {2.0 * highest:.4g} Hz at least, better at {10.0 * highest:.0f} Hz")

@@ -14,7 +14,6 @@ from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.actuator import ChargedActuator
-from flexstage.parts.gauge import Instrument
 
 _DEFAULT_SHARE = 0.01
 _RATE_OVER_HIGHEST = 10.0
@@ -74,7 +73,7 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
     piezos = [stacks(mechanism)[name] for name in names]
     gauges = {name: placed.gauge for name, placed in expand(mechanism).gauges.items() if not placed.members}
     metres = np.array([gauge.quantity.si == "m" for gauge in gauges.values()])
-    highest = highest_mode(mechanism, model)
+    highest = platform_modes(mechanism, model).highest
     rate = setup.rate if setup.rate is not None else 2.0 ** np.ceil(np.log2(_RATE_OVER_HIGHEST * highest))
     volts = np.array([volts_per_metre(piezo) for piezo in piezos])
     capacitances = np.array([np.nan if piezo.capacitance is None else float(np.real(piezo.capacitance)) for piezo in piezos])
@@ -97,7 +96,7 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
         steps=_asked(setup.sensing.resolution, metres, _stated([gauge.resolution for gauge in gauges.values()], 0.0)),
         lags=_stated([gauge.bandwidth for gauge in gauges.values()], np.inf),
         walks=_asked(setup.sensing.drift, metres, np.zeros(len(gauges))),
-        ranges=_ranges(list(gauges.values())),
+        ranges=_stated([gauge.range for gauge in gauges.values()], np.inf),
     )
 
 
@@ -111,17 +110,6 @@ def drivable_actuators(mechanism: Mechanism, model: LinearModel) -> tuple[str, .
     """
     known = stacks(mechanism)
     return tuple(name for name in model.strokes if name in known)
-
-
-def highest_mode(mechanism: Mechanism, model: LinearModel) -> float:
-    """Frequency of the highest platform mode [Hz], below the limit that the stage states for listed modes.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.models.mapped import mapped
-    >>> round(highest_mode(double_triangle(), mapped(double_triangle())), 1)
-    176.7
-    """
-    return platform_modes(mechanism, model).highest
 
 
 def volts_per_metre(piezo: ChargedActuator) -> float:
@@ -151,7 +139,3 @@ def _stated(values: list[Number | None], otherwise: float) -> Array:
 def _asked(value: float | None, metres: Array, stated: Array) -> Array:
     """What a set-up asks of displacement gauges; of others what is stated."""
     return stated if value is None else np.where(metres, value, stated)
-
-
-def _ranges(gauges: list[Instrument]) -> Array:
-    return np.array([float(np.real(gauge.range)) for gauge in gauges])

@@ -66,43 +66,24 @@ class Simulated:
         return self._kept[number]
 
     def _compute_block(self, number: int) -> Array:
-        inputs, moved = self._driven_block(number)
-        read = self._round_to_steps(moved + self._gauge_noise(number) + self._drift(number))
-        return np.concatenate([inputs * self.input_scale, read], axis=1)
-
-    def _driven_block(self, number: int) -> tuple[Array, Array]:
-        used = len(self.chain.inputs)
-        count = len(self.plan.actuators)
-        drive = np.stack([np.fft.rfft(self._white(Stream.DRIVE, channel, number))[:used] for channel in range(count)], axis=1)
-        moved = (self.chain.outputs @ drive[:, :, None])[:, :, 0]
-        return self._middle_block(self.chain.inputs * drive), self._middle_block(moved)
-
-    def _gauge_noise(self, number: int) -> Array | float:
-        if not np.any(self.plan.densities):
-            return 0.0
-        columns = range(len(self.plan.gauges))
-        spectra = [np.fft.rfft(self._white(Stream.GAUGE, column, number)) * self.chain.gauge[:, column] for column in columns]
-        return self._middle_block(np.stack(spectra, axis=1))
-
-    def _drift(self, number: int) -> Array | float:
-        """The random walk of every gauge: a step has the variance of a minute's over the samples of a minute."""
-        if not np.any(self.plan.walks):
-            return 0.0
-        step = self.plan.walks / np.sqrt(60.0 * self.plan.rate)
-        seed, columns = self.plan.setup.seed, range(len(self.plan.gauges))
-        return step * np.stack([walk(seed, column, number, self.block) for column in columns], axis=1)
-
-    def _round_to_steps(self, read: Array) -> Array:
-        """Readings rounded to the gauges' steps, in the record's unit."""
-        scaled = read * self.output_scale
-        steps = self.plan.steps * self.output_scale
+        plan, chain, gauges = self.plan, self.chain, len(self.plan.gauges)
+        drive = self._transforms(Stream.DRIVE, len(plan.actuators), number)[: len(chain.inputs)]
+        read = self._middle_block((chain.outputs @ drive[:, :, None])[:, :, 0])
+        if np.any(plan.densities):
+            read = read + self._middle_block(self._transforms(Stream.GAUGE, gauges, number) * chain.gauge)
+        if np.any(plan.walks):  # a step has the variance of a minute's over the samples of a minute
+            walks = [walk(plan.setup.seed, column, number, self.block) for column in range(gauges)]
+            read = read + plan.walks / np.sqrt(60.0 * plan.rate) * np.stack(walks, axis=1)
+        scaled, steps = read * self.output_scale, plan.steps * self.output_scale
         coarse = np.where(steps > 0.0, steps, 1.0)
-        return np.where(steps > 0.0, np.round(scaled / coarse) * coarse, scaled)
+        rounded = np.where(steps > 0.0, np.round(scaled / coarse) * coarse, scaled)
+        return np.concatenate([self._middle_block(chain.inputs * drive) * self.input_scale, rounded], axis=1)
 
-    def _white(self, stream: Stream, channel: int, number: int) -> Array:
-        """White numbers of a block with its two neighbours."""
+    def _transforms(self, stream: Stream, channels: int, number: int) -> Array:
+        """Transforms (l, channels) of the white numbers of a block with its two neighbours."""
         seed, size = self.plan.setup.seed, self.chain.size
-        return np.concatenate([white(seed, stream, channel, each, size) for each in (number - 1, number, number + 1)])
+        every = ([white(seed, stream, channel, each, size) for each in (number - 1, number, number + 1)] for channel in range(channels))
+        return np.stack([np.fft.rfft(np.concatenate(each)) for each in every], axis=1)
 
     def _middle_block(self, spectra: Array) -> Array:
         """The middle block of what transforms over three blocks stand for, at the sampling rate."""

@@ -109,29 +109,20 @@ def _tones_of_block(record: Record, inputs: tuple[int, ...], outputs: tuple[int,
     for _ in range(_ROUNDS):
         block = quiet_samples(record.samples, steady_tones(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]
         lines = np.fft.rfft(block - np.mean(block, axis=0), axis=0) / np.sqrt(stop - start)
-        more = [
-            Tone(seen.place * line, seen.amplitudes / np.sqrt(stop - start), start, stop, seen.chance, seen.fades)
-            for seen in _block_tones(lines, len(inputs))
-            if all(abs(seen.place * line - other.frequency) > _TAPERS * line for other in found if other.fades)
-        ]
+        fading = [other.frequency for other in found if other.fades]
+        seen = (
+            Tone(each.frequency * line, each.amplitudes / np.sqrt(stop - start), start, stop, each.chance, each.fades)
+            for each in _block_tones(lines, len(inputs))
+        )
+        more = [each for each in seen if all(abs(each.frequency - other) > _TAPERS * line for other in fading)]
         found += more
         if not steady_tones(more):
             break
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class _Seen:
-    """A tone at `place`, in lines."""
-
-    place: float
-    amplitudes: Array
-    chance: float
-    fades: float
-
-
-def _block_tones(lines: Array, inputs: int) -> Iterator[_Seen]:
-    """Tones that outputs hold and inputs do not."""
+def _block_tones(lines: Array, inputs: int) -> Iterator[Tone]:
+    """Tones that outputs hold and inputs do not, their frequencies in lines."""
     for line in _prominent_lines(_unexplained_power(lines, inputs)):
         half = min(_HALF, line, len(lines) - 1 - line)
         if half < _LEAST:
@@ -149,7 +140,7 @@ def _block_tones(lines: Array, inputs: int) -> Iterator[_Seen]:
             offset, amplitudes = _fit_beside_drive(near[:, :inputs], rest[:, seen], offset)
             every = np.zeros(len(seen), dtype=complex)
             every[seen] = amplitudes
-            yield _Seen(line + offset, every, float(np.min(chance)), fades)
+            yield Tone(line + offset, every, 0, 0, float(np.min(chance)), fades)
 
 
 def _is_in_inputs(power: Array) -> bool:
