@@ -83,7 +83,7 @@ def is_formula(text: str, scope: Scope) -> bool:
         told = set(_WORD.findall(text)) & set(scope)
         return bool(told or (not is_plain(text) and _SIGN.search(text.strip()[1:])))
     name = text.strip(" ()")
-    if expression.names == {name}:
+    if set(expression.names) == {name}:
         return bool(scope) and name.lower() not in _NOT_FINITE
     return not expression.literal
 

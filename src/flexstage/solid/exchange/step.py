@@ -31,7 +31,7 @@ FILE_SCHEMA(('AUTOMOTIVE_DESIGN {{ 1 0 10303 214 1 1 1 1 }}'));
 ENDSEC;
 DATA;
 """
-_ASSEMBLY = """#1=APPLICATION_CONTEXT('core data for automotive mechanical design processes');
+_BEGIN = """#1=APPLICATION_CONTEXT('core data for automotive mechanical design processes');
 #2=APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#1);
 #3=PRODUCT_CONTEXT('',#1,'mechanical');
 #4=PRODUCT({name},{name},'',(#3));
@@ -47,7 +47,7 @@ _ASSEMBLY = """#1=APPLICATION_CONTEXT('core data for automotive mechanical desig
 #14=(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT());
 #15=UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-07),#12,'distance_accuracy_value','confusion accuracy');
 #16=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#15))GLOBAL_UNIT_ASSIGNED_CONTEXT((#12,#13,#14))"""
-_ASSEMBLY += """REPRESENTATION_CONTEXT('','3D'));
+_ASSEMBLY = f"""{_BEGIN}REPRESENTATION_CONTEXT('','3D'));
 #17=CARTESIAN_POINT('',(0.,0.,0.));
 #18=DIRECTION('',(0.,0.,1.));
 #19=DIRECTION('',(1.,0.,0.));
