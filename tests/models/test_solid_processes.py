@@ -158,7 +158,6 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
     started: list[remote.Worker] = []
     plain = remote.Worker
     monkeypatch.setattr(remote, "Worker", lambda *said: started.append(plain(*said)) or started[-1])
-    monkeypatch.setattr(remote, "WAITED", 0.0)
     jobs = [job(rod()), job(replace(rod(), name="again"))]
     with Pool() as pool:
         for part in (jobs,) if workers == 2 else ([each] for each in jobs):  # the process stays from run to run
@@ -167,22 +166,6 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
     assert outcomes[0] == outcomes[1]
     assert len(started) == workers
     assert all(each.process.poll() is not None for each in started)
-
-
-def test_the_like_of_what_a_process_does_waits_for_it_where_it_is_spared_much(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(remote, "Worker", lambda *_: SimpleNamespace(process=SimpleNamespace(poll=lambda: None), end=lambda: None))
-    lever, again, foot = (job(rod(size * mm)) for size in (6.0, 6.0, 7.0))
-    pool: Any = Pool()
-    busy = pool.worker(lever)
-    assert pool.choose([again, foot]) == 1
-    assert pool.choose([again]) is None  # it is little but a mesh
-    finer = replace(again, reduction=replace(again.reduction, fineness=replace(again.reduction.fineness, order=5)))
-    assert pool.choose([again, finer]) == 1  # rather than that nobody works
-    other = pool.worker(foot)
-    pool.idle = [other, busy]
-    assert pool.choose([again, foot]) == 0
-    assert pool.worker(again) is busy
-    assert pool.worker(foot) is other
 
 
 def test_a_process_that_has_ended_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -246,7 +246,7 @@ def _hinge_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result
 def _unit_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
     alone = units_alone(mechanism)
     todo = reduction_plan(alone, asked, ways)
-    bare = todo.jobs > 0
+    bare = bool(todo.jobs)
     work_ahead(reduction_plan(alone, asked, ways, bare=True) if bare else todo, ways)
     found = verification.units_solid(mechanism, asked, solids(ways), bare=bare)
 

@@ -16,6 +16,7 @@ from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.solid.exchange.paint import Colour, palette
 from flexstage.solid.fea.solver.assemble import Placed
+from flexstage.solid.fea.solver.component import groups
 from flexstage.solid.fea.solver.surface import vertex_places
 
 _KEYS = 33
@@ -70,11 +71,8 @@ def surfaces(placed: Sequence[Placed], motions: Sequence[Motion]) -> Mapping[str
 
 def _split_surface(item: Placed, vertices: Array, shifts: Array) -> dict[str, Surface]:
     skin = item.element.skin
-    names: dict[str, list[int]] = {}
-    for number, piece in enumerate(item.component.pieces):
-        names.setdefault(piece.name if piece.body is None else piece.body, []).append(number)
     result: dict[str, Surface] = {}
-    for name, numbers in names.items():
+    for name, numbers in groups(item.component).items():
         used, triangles = np.unique(skin.triangles[np.isin(skin.owner, numbers)], return_inverse=True)
         if len(used):
             result[name] = Surface(vertices[used], triangles.reshape(-1, 3), shifts[:, used], name in item.component.bodies)

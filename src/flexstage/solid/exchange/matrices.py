@@ -64,7 +64,7 @@ def export_superelement(
 
 def _component(parts: tuple[Component, ...], name: str) -> Component:
     """The component that a body or link is part of."""
-    held = {piece.body or piece.name: part for part in parts for piece in part.pieces}
+    held = {piece.owner: part for part in parts for piece in part.pieces}
     if name not in held:
         raise refuse(name, "no solid of the stage has this name", suggest_nearest(name, held))
     return held[name]

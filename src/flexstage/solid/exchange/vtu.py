@@ -68,11 +68,11 @@ def _place_mesh(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
 def vtu(mesh: StageMesh) -> bytes:
     """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3]."""
     pieces = [mesh.stage.pieces[name] for name in mesh.pieces]
-    bodies = _number_points(piece.name if piece.body is None else piece.body for piece in pieces)
+    bodies = _number_points(piece.owner for piece in pieces)
     materials = _number_points(mesh.stage.materials[name] for name in mesh.pieces)
     owner = np.concatenate([item.owner for item in mesh.grids])
     part = np.concatenate([np.full(len(item.owner), number) for number, item in enumerate(mesh.grids)])
-    body = np.array([bodies[piece.name if piece.body is None else piece.body] for piece in pieces])
+    body = np.array([bodies[piece.owner] for piece in pieces])
     material = np.array([materials[mesh.stage.materials[name]] for name in mesh.pieces])
     data = {
         "piece": owner,

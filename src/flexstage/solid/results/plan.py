@@ -27,53 +27,43 @@ from flexstage.solid.results.resolution import Resolution, first_reductions, ord
 
 
 @dataclass(frozen=True)
-class Phase:
-    """Jobs of one sort: seconds by key, the most unknowns of one of them and the memory [bytes] it needs (0: not known); the jobs."""
-
-    name: str
-    seconds: Mapping[str, float]
-    freedoms: float = 0.0
-    memory: float = 0.0
-    todo: tuple[StoredJob, ...] = ()
-
-
-@dataclass(frozen=True)
 class Plan:
-    """The phases of a computation, how many jobs are done at once, how many are in the cache already; what may come on top.
+    """The jobs of a computation by phase, how many are done at once, how many are in the cache already; what may come on top.
 
     Without the jobs of `needed` (keys) nothing can be told.
     """
 
-    phases: tuple[Phase, ...]
+    phases: Mapping[str, tuple[StoredJob, ...]]
     lanes: int
     cached: int = 0
     further: str = ""
     needed: frozenset[str] = frozenset()
 
     @property
-    def jobs(self) -> int:
-        """How many there are to do."""
-        return sum(len(phase.seconds) for phase in self.phases)
+    def jobs(self) -> tuple[StoredJob, ...]:
+        """All there are to do."""
+        return tuple(chain.from_iterable(self.phases.values()))
 
     @property
     def seconds(self) -> float:
         """What they usually take in one queue [s]."""
-        each = [seconds for phase in self.phases for seconds in phase.seconds.values()]
+        each = [job.seconds() for job in self.jobs]
         return max(sum(each) / self.lanes, max(each, default=0.0))
 
     def __str__(self) -> str:
-        """The plan in a line or two.
+        """The plan in a line or two: how many jobs, the unknowns and the memory of the largest, seconds.
 
-        >>> print(Plan((Phase("hinges", {"a": 15.0, "b": 15.0}), Phase("order 3", {"c": 90.0}, 60e3, 9e8)), lanes=2, cached=3))
-        to do: 2 hinges, 1 at order 3 (up to 60,000 unknowns and 0.9 GB each, 2 at once); usually 2 minutes. 3 are in the cache.
+        >>> print(Plan({"hinges": ()}, lanes=2, cached=3))
+        to do: nothing, all 3 parts are in the cache.
         """
         if not self.jobs:
             return f"to do: nothing, all {self.cached} parts are in the cache."
-        names = dict.fromkeys(phase.name for phase in self.phases if phase.seconds)
-        counts = {name: sum(len(phase.seconds) for phase in self.phases if phase.name == name) for name in names}
-        work = ", ".join(f"{count} {'' if name == 'hinges' else 'at '}{name}" for name, count in counts.items())
-        largest = max(self.phases, key=lambda phase: phase.memory)
-        sizes = f"up to {largest.freedoms:,.0f} unknowns and {gigabytes(largest.memory)} each, " if largest.memory else ""
+        work = ", ".join(f"{len(jobs)} {'' if name == 'hinges' else 'at '}{name}" for name, jobs in self.phases.items() if jobs)
+        expected = [(job, job.expected(job.reduction.fineness)) for job in self.jobs if isinstance(job, Reduce)]
+        memory, unknowns = max(
+            ((job.needed(mesh), freedoms(mesh, job.reduction.fineness.order)) for job, mesh in expected), default=(0.0, 0.0)
+        )
+        sizes = f"up to {unknowns:,.0f} unknowns and {gigabytes(memory)} each, " if memory else ""
         known = f" {self.cached} are in the cache." if self.cached else ""
         return f"to do: {work} ({sizes}{self.lanes} at once); usually {duration(self.seconds)}.{known}{self.further}"
 
@@ -122,12 +112,14 @@ def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *
 def _plan(phases: Mapping[str, Iterable[StoredJob]], ways: Ways, further: str, needed: frozenset[str]) -> Plan:
     """A plan of the jobs of phases by name, each of them once; refused where one that is needed is far beyond memory or time."""
     whole = {name: distinct(jobs) for name, jobs in phases.items()}
-    todo = tuple(_phase(name, jobs, ways) for name, jobs in whole.items())
-    known = sum(map(len, whole.values())) - sum(len(phase.todo) for phase in todo)
+    todo = {
+        name: tuple(job for job in jobs if ways.cache is None or not holds(ways.cache, job.key, job.stored)) for name, jobs in whole.items()
+    }
+    plan = Plan(todo, workers(ways.limits), sum(map(len, whole.values())) - sum(map(len, todo.values())), further, needed)
     memory = available() if ways.limits.memory is None else ways.limits.memory
-    reductions = (job for phase in todo for job in phase.todo if job.key in needed and isinstance(job, Reduce))
+    reductions = (job for job in plan.jobs if job.key in needed and isinstance(job, Reduce))
     require(each for each in (job.foreseen_refusal(memory, ways.limits.seconds) for job in reductions) if each is not None)
-    return Plan(todo, workers(ways.limits), known, further, needed)
+    return plan
 
 
 def work_ahead(plan: Plan, ways: Ways) -> None:
@@ -135,12 +127,11 @@ def work_ahead(plan: Plan, ways: Ways) -> None:
 
     Raises `DesignError` where what is needed in any case cannot be had; what only a unit alone lacks is told when its turn comes.
     """
-    todo = [job for phase in plan.phases for job in phase.todo]
     try:
-        obtain(todo, ways)
+        obtain(plan.jobs, ways)
     except DesignError:
         known = {} if ways.pool is None else ways.pool.results
-        if any(job.key in plan.needed and job.key not in known for job in todo):
+        if any(job.key in plan.needed and job.key not in known for job in plan.jobs):
             raise
 
 
@@ -154,14 +145,3 @@ def units_alone(mechanism: Mechanism) -> list[Mechanism]:
         return [with_drawn_parts(isolate(mechanism, copy)) for copy, _ in driven_units(mechanism).values()]
     except DesignError:
         return []
-
-
-def _phase(name: str, jobs: Iterable[StoredJob], ways: Ways) -> Phase:
-    """Those of the jobs that are not in the cache."""
-    todo = tuple(job for job in jobs if ways.cache is None or not holds(ways.cache, job.key, job.stored))
-    reductions = [job for job in todo if isinstance(job, Reduce)]
-    sizes = [
-        (job.needed(job.expected(way)), freedoms(job.expected(way), way.order)) for job in reductions for way in [job.reduction.fineness]
-    ]
-    memory, unknowns = max(sizes, default=(0.0, 0.0))
-    return Phase(name, {job.key: job.seconds() for job in todo}, unknowns, memory, todo)

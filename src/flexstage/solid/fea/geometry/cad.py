@@ -15,7 +15,7 @@ from flexstage.parts.body import Cylinder, Imported, Pierced, Sphere
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.draw import draw_form, move_solid
 from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors, cut_at_mirrors, is_symmetric
-from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, is_mirrored
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, coordinates, is_mirrored
 from flexstage.solid.fea.jobs.content import KEPT
 from flexstage.solid.fea.solver.component import Component, Interface, Joint, groups
 
@@ -140,7 +140,7 @@ def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Findin
         return
     groups: list[set[tuple[float, ...]]] = []
     for solid in shape.solids:
-        faces = {tuple(np.round((*_coordinates(face.center), face.mass), 6)) for face in solid.faces}
+        faces = {tuple(np.round((*coordinates(face.center), face.mass), 6)) for face in solid.faces}
         touching = [group for group in groups if group & faces]
         groups = [group for group in groups if not group & faces] + [set.union(faces, *touching)]
     if len(groups) > 1:
@@ -178,20 +178,16 @@ def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
 
 
 def _distance(face: occ.Face, origin: Array) -> float:
-    return float(np.linalg.norm(_coordinates(face.center) - origin))
+    return float(np.linalg.norm(coordinates(face.center) - origin))
 
 
 def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
     """Whether all of the face lies in the plane through `origin`."""
 
     def lies_there(point: occ.gp_Pnt) -> bool:
-        return abs(float(normal @ (_coordinates(point) - origin))) <= _TOLERANCE
+        return abs(float(normal @ (coordinates(point) - origin))) <= _TOLERANCE
 
     return all(lies_there(vertex.p) for vertex in face.vertices) and lies_there(face.center)
-
-
-def _coordinates(point: occ.gp_Pnt) -> Array:
-    return np.array([point.x, point.y, point.z])
 
 
 def region(piece: Piece, points: Array) -> Array:
@@ -216,4 +212,4 @@ def half_extents(piece: Piece) -> Array:
     if isinstance(piece.form, Imported):
         return 0.5 * np.real(np.array(piece.form.size))
     low, high = draw_form(piece.form).bounding_box
-    return 0.5 * (_coordinates(high) - _coordinates(low)) / MILLIMETRES
+    return 0.5 * (coordinates(high) - coordinates(low)) / MILLIMETRES

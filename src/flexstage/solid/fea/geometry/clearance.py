@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from flexstage.mechanism.geometry.near import near_pairs
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.solid.fea.geometry.draw import draw_form, move_solid
 from flexstage.solid.fea.geometry.near import Answer, Question, distance_text, frame_key, relative_frame
-from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, form_digest
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, coordinates, form_digest
 from flexstage.solid.fea.geometry.stage_pieces import Stage
 
 TOUCHING = 1e-6
@@ -54,7 +52,7 @@ def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
     here, there = draw_form(first.form), move_solid(draw_form(second.form), relative_frame(second.frame, first.frame))
     away, common = float(here.Distance(there)), here * there  # a solid within another one is at a distance from its faces
     if common.mass > _NO_VOLUME:
-        at = first.frame.point(np.array([common.center.x, common.center.y, common.center.z]) / MILLIMETRES) * MILLIMETRES
+        at = first.frame.point(coordinates(common.center) / MILLIMETRES) * MILLIMETRES
         place = ", ".join(f"{round(float(value), 3) + 0.0:g}" for value in at)
         yield f"it overlaps {second.name} by {common.mass:.3g} mm3 around ({place}) mm", _advice(first, second)
     elif away > (clearance + TOUCHING) * MILLIMETRES:

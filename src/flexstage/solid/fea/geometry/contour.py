@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -54,3 +55,9 @@ def _controls(heights: Array) -> Array:
 def _points(start: float, end: float, share: Array, heights: Array) -> list[occ.gp_Pnt]:
     places = MILLIMETRES * (start + (end - start) * share)
     return [occ.Pnt(float(x), float(y), 0) for x, y in zip(places, heights, strict=True)]
+
+
+def segments(points: Sequence[tuple[float, float]]) -> list[occ.TopoDS_Shape]:
+    """Segments between points of the xy plane [mm], none where two points are one."""
+    pairs = pairwise(points)
+    return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairs if np.hypot(b[0] - a[0], b[1] - a[1]) > _SAME]

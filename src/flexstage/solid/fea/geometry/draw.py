@@ -28,9 +28,9 @@ from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea.geometry.contour import contour_edges
+from flexstage.solid.fea.geometry.contour import contour_edges, segments
 from flexstage.solid.fea.geometry.imported import imported_shape
-from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, millimetres
 from flexstage.solid.fea.geometry.reinforced_leaf import reinforced_solid
 from flexstage.solid.fea.hinges.specimen import Specimen, bar, cut
 from flexstage.spatial.frame import Frame
@@ -96,18 +96,14 @@ def _point(position: Array) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _mm(value: object) -> float:
-    return float(np.real(value)) * MILLIMETRES  # type: ignore[arg-type]
-
-
 def _box(x: object, y: object, z: object) -> occ.Solid:
-    a, b, c = 0.5 * _mm(x), 0.5 * _mm(y), 0.5 * _mm(z)
+    a, b, c = 0.5 * millimetres(x), 0.5 * millimetres(y), 0.5 * millimetres(z)
     return occ.Box(occ.Pnt(-a, -b, -c), occ.Pnt(a, b, c))
 
 
 def _round(diameter: object, size: object) -> occ.Solid:
-    half = 0.5 * _mm(size)
-    return occ.Cylinder(occ.Pnt(-half, 0, 0), occ.X, r=0.5 * _mm(diameter), h=2.0 * half)
+    half = 0.5 * millimetres(size)
+    return occ.Cylinder(occ.Pnt(-half, 0, 0), occ.X, r=0.5 * millimetres(diameter), h=2.0 * half)
 
 
 def _block(form: Block) -> occ.Solid:
@@ -121,8 +117,8 @@ def _tube(form: Cylinder) -> occ.Solid:
 
 
 def _extrusion(form: Extrusion) -> occ.Solid:
-    half = 0.5 * _mm(form.height)
-    return _prism([occ.Pnt(_mm(x), _mm(y), -half) for x, y in np.real(form.corners)], occ.Vec(0, 0, 2.0 * half))
+    half = 0.5 * millimetres(form.height)
+    return _prism([occ.Pnt(millimetres(x), millimetres(y), -half) for x, y in np.real(form.corners)], occ.Vec(0, 0, 2.0 * half))
 
 
 def _prism(corners: list[occ.Pnt], along: occ.Vec) -> occ.Solid:
@@ -141,7 +137,7 @@ _SOLIDS: Mapping[type[Solid], Callable[[Any], occ.Solid]] = {
     Block: _block,
     Cylinder: _tube,
     Extrusion: _extrusion,
-    Sphere: lambda form: occ.Sphere(occ.Pnt(0, 0, 0), 0.5 * _mm(form.diameter)),
+    Sphere: lambda form: occ.Sphere(occ.Pnt(0, 0, 0), 0.5 * millimetres(form.diameter)),
     Imported: imported_shape,
     Pierced: _pierced,
 }
@@ -152,28 +148,28 @@ def _neck(form: Neck) -> occ.Solid:
         flat = _extrude(form.thickness, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
         upright = _extrude(form.width, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
         return flat * upright.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
-    half = 0.5 * _mm(length(form.profile))
-    upper = _upper(0.5 * _mm(form.thickness), form.profile)
-    start, end = _ends(0.5 * _mm(form.thickness), form.profile)
+    half = 0.5 * millimetres(length(form.profile))
+    upper = _upper(0.5 * millimetres(form.thickness), form.profile)
+    start, end = _ends(0.5 * millimetres(form.thickness), form.profile)
     outline = [(half, end), (half, 0.0), (-half, 0.0), (-half, start)]
-    wire = occ.Wire([*upper, *_polyline(outline)])
+    wire = occ.Wire([*upper, *segments(outline)])
     return occ.Face(wire).Revolve(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 360.0)
 
 
 def _extrude(thickness: object, profile: Profile, width: object) -> occ.Solid:
     """The profile on both sides of the xz plane, drawn through the width."""
-    half, rise = 0.5 * _mm(length(profile)), 0.5 * _mm(thickness)
+    half, rise = 0.5 * millimetres(length(profile)), 0.5 * millimetres(thickness)
     upper, lower = _upper(rise, profile), _upper(rise, profile, side=-1.0)
     start, end = _ends(rise, profile)
-    right, left = _polyline([(half, -end), (half, end)]), _polyline([(-half, start), (-half, -start)])
+    right, left = segments([(half, -end), (half, end)]), segments([(-half, start), (-half, -start)])
     face = occ.Face(occ.Wire([*lower, *right, *reversed(upper), *left]))  # counter-clockwise: extrusion along +z gives a positive volume
-    depth = _mm(width)
+    depth = millimetres(width)
     return face.Extrude(occ.Vec(0, 0, depth)).Move(occ.Vec(0, 0, -0.5 * depth))
 
 
 def _ends(rise: float, profile: Profile) -> tuple[float, float]:
     """Half heights of the two end faces [mm]."""
-    height = rise + _mm(cut_height(profile))
+    height = rise + millimetres(cut_height(profile))
     return height, height
 
 
@@ -181,12 +177,12 @@ def _upper(rise: float, profile: Profile, side: float = 1.0) -> Curve:
     """The edge curve y = side (rise + w(x)) from one end face to the other, in the xy plane."""
     if isinstance(profile, Contour):
         return contour_edges(profile, rise, side)
-    half, height = 0.5 * _mm(length(profile)), rise + _mm(cut_height(profile))
+    half, height = 0.5 * millimetres(length(profile)), rise + millimetres(cut_height(profile))
     if height == rise:
-        return _polyline([(-half, side * rise), (half, side * rise)])
+        return segments([(-half, side * rise), (half, side * rise)])
     curve, reach, end = _cut(rise, profile, side)
-    left = _polyline([(-half, side * height), (-reach, side * height), (-reach, side * end)])
-    right = _polyline([(reach, side * end), (reach, side * height), (half, side * height)])
+    left = segments([(-half, side * height), (-reach, side * height), (-reach, side * end)])
+    right = segments([(reach, side * end), (reach, side * height), (half, side * height)])
     return [*left, *curve, *right]
 
 
@@ -194,7 +190,7 @@ def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, floa
     """The curved part, shortened: its edges, how far it reaches along x and its height there [mm]."""
     if isinstance(profile, Filleted):
         return _fillet(rise, profile, side)
-    half, height = 0.5 * _mm(length(profile)), _mm(cut_height(profile))
+    half, height = 0.5 * millimetres(length(profile)), millimetres(cut_height(profile))
     largest = float(np.arcsin(1.0 - SHORTENED))
 
     def at(angle: float) -> tuple[float, float]:
@@ -206,7 +202,7 @@ def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, floa
 
 
 def _fillet(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, float]:
-    radius, half = _mm(profile.radius), 0.5 * _mm(profile.length)
+    radius, half = millimetres(profile.radius), 0.5 * millimetres(profile.length)
     straight, largest = half - radius, float(np.arcsin(1.0 - SHORTENED))
 
     def at(angle: float, sign: float) -> tuple[float, float]:
@@ -214,7 +210,7 @@ def _fillet(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, 
 
     left = _arc(at(largest, -1.0), at(0.5 * largest, -1.0), at(0.0, -1.0))
     right = _arc(at(0.0, 1.0), at(0.5 * largest, 1.0), at(largest, 1.0))
-    middle = _polyline([at(0.0, -1.0), at(0.0, 1.0)]) if straight > 0.0 else []
+    middle = segments([at(0.0, -1.0), at(0.0, 1.0)]) if straight > 0.0 else []
     reach, end = at(largest, 1.0)
     return [left, *middle, right], reach, side * end
 
@@ -228,14 +224,10 @@ def _spline(at: Callable[[float], tuple[float, float]], largest: float) -> occ.T
     return occ.SplineInterpolation([occ.Pnt(*at(float(angle)), 0) for angle in angles])
 
 
-def _polyline(points: list[tuple[float, float]]) -> Curve:
-    return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points)]
-
-
 def prism(form: Shaped) -> occ.Solid:
     """A part of one section, drawn by the corners of its outline [mm]."""
-    half = 0.5 * _mm(form.span)
-    return _prism([occ.Pnt(-half, _mm(y), _mm(z)) for y, z in form.throat.outline(np.zeros(0))], occ.Vec(2.0 * half, 0, 0))
+    half = 0.5 * millimetres(form.span)
+    return _prism([occ.Pnt(-half, millimetres(y), millimetres(z)) for y, z in form.throat.outline(np.zeros(0))], occ.Vec(2.0 * half, 0, 0))
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from flexstage.base.storage.files import require_regular
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Imported, Inertia
 from flexstage.parts.mass import tensor
-from flexstage.solid.fea.geometry.piece import MILLIMETRES
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, coordinates
 
 _DIGITS = 6
 """Digits of a box [mm]: the kernel widens it by 1e-7."""
@@ -67,9 +67,9 @@ def measure(path: Path, name: str | None = None) -> ImportedProperties:
     """
     digest = _sha256(path)
     solid = _solid(path, name)
-    low, high = (np.round([corner.x, corner.y, corner.z], _DIGITS) / MILLIMETRES for corner in solid.bounding_box)
+    low, high = (np.round(coordinates(corner), _DIGITS) / MILLIMETRES for corner in solid.bounding_box)
     volume = float(solid.mass) / MILLIMETRES**3
-    centre = np.array([solid.center.x, solid.center.y, solid.center.z]) / MILLIMETRES
+    centre = coordinates(solid.center) / MILLIMETRES
     return ImportedProperties(digest, high - low, 0.5 * (low + high), volume, centre, _inertia(solid))
 
 

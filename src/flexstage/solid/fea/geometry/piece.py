@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -81,6 +81,11 @@ class Piece:
     medium: Medium
     frame: Frame
     body: str | None = None
+
+    @property
+    def owner(self) -> str:
+        """Its body, or a link itself."""
+        return self.name if self.body is None else self.body
 
 
 def medium(material: Material, rotation: Array | None = None) -> Medium:
@@ -204,3 +209,13 @@ def thinnest(form: Form) -> float:
 def _single(value: Number) -> float:
     """One design's number; batches have no single solid."""
     return float(np.real(value))
+
+
+def millimetres(value: object) -> float:
+    """A length of one design in CAD units."""
+    return _single(value) * MILLIMETRES  # type: ignore[arg-type]
+
+
+def coordinates(point: Any) -> Array:
+    """The coordinates (3,) of a point of the CAD kernel or of a mesh [mm]."""
+    return np.array([point.x, point.y, point.z])

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from netgen import occ
 
 from flexstage.parts.profile import single
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
+from flexstage.solid.fea.geometry.contour import segments
 from flexstage.solid.fea.geometry.piece import MILLIMETRES
-
-_SAME = 1e-9
-"""Distance [mm] below which two points are one."""
 
 
 def reinforced_solid(part: ReinforcedLeaf) -> occ.Solid:
@@ -24,7 +20,7 @@ def reinforced_solid(part: ReinforcedLeaf) -> occ.Solid:
     """
     quarters = [_quarter(part, *sides) for sides in ((1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0))]
     half, thin = 0.5 * MILLIMETRES * single(part.length), 0.5 * MILLIMETRES * single(part.thickness)
-    ends = [_lines([(-half, thin), (-half, -thin)]), _lines([(half, -thin), (half, thin)])]
+    ends = [segments([(-half, thin), (-half, -thin)]), segments([(half, -thin), (half, thin)])]
     edges = [*quarters[0], *quarters[1], *ends[0], *quarters[2], *quarters[3], *ends[1]]
     depth = MILLIMETRES * single(part.width)
     return occ.Face(occ.Wire(edges)).Extrude(occ.Vec(0, 0, depth)).Move(occ.Vec(0, 0, -0.5 * depth))
@@ -47,9 +43,5 @@ def _quarter(part: ReinforcedLeaf, right: float, up: float) -> list[occ.TopoDS_S
         points = [occ.Pnt(*point, 0) for point in (lower[1], middle, upper[0])]
         arc = [occ.ArcOfCircle(*(points if forwards else points[::-1]))]
     if forwards:
-        return [*_lines(lower), *arc, *_lines(upper)]
-    return [*_lines(upper[::-1]), *arc, *_lines(lower[::-1])]
-
-
-def _lines(points: list[tuple[float, float]]) -> list[occ.TopoDS_Shape]:
-    return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points) if np.hypot(b[0] - a[0], b[1] - a[1]) > _SAME]
+        return [*segments(lower), *arc, *segments(upper)]
+    return [*segments(upper[::-1]), *arc, *segments(lower[::-1])]

@@ -16,7 +16,7 @@ from flexstage.base.number import Array
 from flexstage.solid.fea.geometry.cad import cad, half_extents
 from flexstage.solid.fea.geometry.draw import draw_form
 from flexstage.solid.fea.geometry.near import Question, distance_text, findings_of
-from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Piece, thinnest
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Piece, coordinates, thinnest
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.solver.component import Component
 
@@ -92,7 +92,7 @@ def _slivers(shape: occ.TopoDS_Shape, pieces: Sequence[Piece]) -> Iterator[_Sliv
         *(("an edge {} long", edge.mass, edge) for edge in shape.edges),
         *(("a face {} wide", _width(face), face) for face in shape.faces),
     ]
-    small = [(kind, size, _middle(place)) for kind, size, place in measured if _NOTHING < size < limit]
+    small = [(kind, size, coordinates(place.center) / MILLIMETRES) for kind, size, place in measured if _NOTHING < size < limit]
     halves = [half_extents(piece) for piece in pieces] if small else []
     for kind, size, middle in small:
         within = max(_TOUCHING, size / MILLIMETRES)
@@ -118,8 +118,3 @@ def _width(face: occ.Face) -> float:
     """The short side of the rectangle of equal area and rim: a strip's width."""
     area, half_rim = face.mass, 0.5 * sum(edge.mass for edge in face.edges)
     return float(0.5 * (half_rim - np.sqrt(max(half_rim**2 - 4.0 * area, 0.0))))
-
-
-def _middle(shape: occ.TopoDS_Shape) -> Array:
-    centre = shape.center
-    return np.array([centre.x, centre.y, centre.z]) / MILLIMETRES

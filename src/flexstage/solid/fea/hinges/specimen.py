@@ -10,19 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from netgen import occ
 
-from flexstage.base.number import Number
 from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.section import Circle, Rectangle, Section
 from flexstage.parts.shape import Profiled, Shaped
-from flexstage.solid.fea.geometry.contour import contour_edges
+from flexstage.solid.fea.geometry.contour import contour_edges, segments
 from flexstage.solid.fea.geometry.mirror import Mirrors, cut_at_mirrors, is_symmetric
-from flexstage.solid.fea.geometry.piece import MILLIMETRES
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, millimetres
 from flexstage.solid.fea.hinges.roots import rises
 
 START, END = "start", "end"
@@ -33,8 +31,6 @@ BLUNTED = 0.06
 
 _NEAR = 1e-6
 """Relative to the hinge's length: what counts as lying in a plane."""
-_SAME = 1e-9
-"""Distance [mm] below which two points are one."""
 _LONG = 1.5
 """Elements of a rod over its diameter."""
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
@@ -71,11 +67,11 @@ class _Side:
 
     @property
     def half(self) -> float:
-        return 0.5 * _mm(length(self.profile))
+        return 0.5 * millimetres(length(self.profile))
 
     @property
     def height(self) -> float:
-        return self.rise + _mm(cut_height(self.profile))
+        return self.rise + millimetres(cut_height(self.profile))
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -141,19 +137,19 @@ def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
 
 
 def _draw_cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
-    side = _Side(0.5 * _mm(part.throat.height), part.profile, stubs)
+    side = _Side(0.5 * millimetres(part.throat.height), part.profile, stubs)
     if part.is_axisymmetric:
         return _name_faces(_revolve(side), side, 2.0 * side.rise, size)
     if part.end.first.width == part.throat.first.width:
-        return _wide(side, _mm(part.throat.width), size)
-    across = _Side(0.5 * _mm(part.throat.width), part.profile, stubs)
+        return _wide(side, millimetres(part.throat.width), size)
+    across = _Side(0.5 * millimetres(part.throat.width), part.profile, stubs)
     turned = _extrude(across, 3.0 * side.height).Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
     return _name_faces(_extrude(side, 3.0 * across.height) * turned, side, 2.0 * min(side.rise, across.rise), size)
 
 
 def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS_Shape | None = None) -> Specimen:
     """A part as it is `drawn` [mm] (absent: of one section), and the blocks that it ends on, of given lengths [mm]."""
-    side = _Side(0.5 * _mm(part.end.height), Straight(part.span), stubs)
+    side = _Side(0.5 * millimetres(part.end.height), Straight(part.span), stubs)
     solid = _prism(part) if drawn is None else drawn
     thin = _thinness(part)
     if not any(stubs):
@@ -166,36 +162,32 @@ def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS
 
 
 def _prism(part: Shaped) -> occ.TopoDS_Shape:
-    side = _Side(0.5 * _mm(part.throat.height), Straight(part.span))
-    return _revolve(side) if part.is_axisymmetric else _extrude(side, _mm(part.throat.width))
+    side = _Side(0.5 * millimetres(part.throat.height), Straight(part.span))
+    return _revolve(side) if part.is_axisymmetric else _extrude(side, millimetres(part.throat.width))
 
 
 def _thinness(part: Shaped) -> float:
     """Largest element [mm] where it is thinnest: those of leaves may be flat."""
-    thin = _mm(part.throat.thinnest)
+    thin = millimetres(part.throat.thinnest)
     if part.bends_both_ways:
         return _LONG * thin if part.slender else thin
-    return max(thin, _FLAT_STRAIGHT * min(_mm(part.throat.width), _mm(part.span)))
+    return max(thin, _FLAT_STRAIGHT * min(millimetres(part.throat.width), millimetres(part.span)))
 
 
 def _block(part: Shaped, sign: float, start: float, depth: float) -> occ.TopoDS_Shape:
     """The block [mm] at one end of a hinge."""
     section, _ = own_stub(part)
-    high, wide = _mm(section.height), _mm(section.width)
+    high, wide = millimetres(section.height), millimetres(section.width)
     if section.is_axisymmetric:
         return occ.Cylinder(occ.Pnt(sign * start, 0, 0), occ.X if sign > 0.0 else -occ.X, 0.5 * high, depth)
     low, top = sorted((sign * start, sign * (start + depth)))
     return occ.Box(occ.Pnt(low, -0.5 * high, -0.5 * wide), occ.Pnt(top, 0.5 * high, 0.5 * wide))
 
 
-def _mm(value: Number) -> float:
-    return float(np.real(value)) * MILLIMETRES
-
-
 def _extrude(side: _Side, width: float) -> occ.TopoDS_Shape:
     upper, lower = _edge(side, 1.0), _edge(side, -1.0)
     (start, end), (first, last) = side.ends, side.tops
-    right, left = _lines([(end, -last), (end, last)]), _lines([(start, first), (start, -first)])
+    right, left = segments([(end, -last), (end, last)]), segments([(start, first), (start, -first)])
     face = occ.Face(occ.Wire([*lower, *right, *reversed(upper), *left]))
     return face.Extrude(occ.Vec(0, 0, width)).Move(occ.Vec(0, 0, -0.5 * width))
 
@@ -203,20 +195,20 @@ def _extrude(side: _Side, width: float) -> occ.TopoDS_Shape:
 def _revolve(side: _Side) -> occ.TopoDS_Shape:
     (start, end), (first, last) = side.ends, side.tops
     rest = [(end, last), (end, 0.0), (start, 0.0), (start, first)]
-    face = occ.Face(occ.Wire([*_edge(side, 1.0), *_lines(rest)]))
+    face = occ.Face(occ.Wire([*_edge(side, 1.0), *segments(rest)]))
     return face.Revolve(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 360.0)
 
 
 def _edge(side: _Side, sign: float) -> _Curve:
     """The outline's edge from -x to +x, above the axis or below it."""
     if isinstance(side.profile, Straight):
-        return _lines([(-side.half, sign * side.rise), (side.half, sign * side.rise)])
+        return segments([(-side.half, sign * side.rise), (side.half, sign * side.rise)])
     (start, end), (first, last) = side.ends, side.tops
     if isinstance(side.profile, Contour):
         curve, near, far = contour_edges(side.profile, side.rise, sign), (-side.half, sign * first), (side.half, sign * last)
     else:
         curve, near, far = _cut(side, sign)
-    return [*_lines([(start, sign * first), near]), *curve, *_lines([far, (end, sign * last)])]
+    return [*segments([(start, sign * first), near]), *curve, *segments([far, (end, sign * last)])]
 
 
 def _cut(side: _Side, sign: float) -> tuple[_Curve, tuple[float, float], tuple[float, float]]:
@@ -233,7 +225,7 @@ def _cut(side: _Side, sign: float) -> tuple[_Curve, tuple[float, float], tuple[f
     if isinstance(side.profile, Elliptic):
         return _ellipse(side, sign), at(first), at(last)
     tiny = np.finfo(float).tiny
-    middle = _lines([at(-tiny), at(tiny)]) if flat > _NEAR * side.half else []
+    middle = segments([at(-tiny), at(tiny)]) if flat > _NEAR * side.half else []
     return [_arc(at, first, -tiny), *middle, _arc(at, tiny, last)], at(first), at(last)
 
 
@@ -253,11 +245,6 @@ def _ellipse(side: _Side, sign: float) -> _Curve:
     first, last = (angle if sign > 0.0 else -angle for angle in side.angles)
     near, far = sorted((middle + first, middle)), sorted((middle, middle + last))
     return [curve.Trim(*between).Edge() for between in (near, far)]
-
-
-def _lines(points: list[tuple[float, float]]) -> _Curve:
-    """Segments between points, none where two points are one."""
-    return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points) if np.hypot(b[0] - a[0], b[1] - a[1]) > _SAME]
 
 
 def _wide(side: _Side, width: float, size: float) -> Specimen:

@@ -107,15 +107,6 @@ def needed(counts: Counts, order: int, columns: int) -> float:
     return _PROCESS + _PER_ELEMENT * counts.elements + full * (_MATRICES + counts.sides * _FACTOR * growth) + vectors
 
 
-def mesh_seconds(counts: Counts) -> float:
-    """What drawing and meshing usually take on one core [s].
-
-    >>> round(mesh_seconds(Counts.of(1000.0)), 1)
-    0.6
-    """
-    return _DRAWN + _PER_MESHED * counts.elements
-
-
 def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
     """What a reduction usually takes on one core [s]: drawing, mesh, and each unknown solved for and projected once a coordinate.
 
@@ -125,7 +116,8 @@ def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
     (0.8, 22)
     """
     size = freedoms(counts, order)
-    return mesh_seconds(counts) + size * (_PER_FREEDOM + _PER_PROJECTED * columns) * max(1.0, size / _SLOWER) ** 0.5
+    drawn = _DRAWN + _PER_MESHED * counts.elements
+    return drawn + size * (_PER_FREEDOM + _PER_PROJECTED * columns) * max(1.0, size / _SLOWER) ** 0.5
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:

@@ -16,7 +16,7 @@ from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.piece import Form, Piece, span, thinnest
 from flexstage.solid.fea.jobs.cache import SUPERELEMENTS, Kind
 from flexstage.solid.fea.jobs.content import content
-from flexstage.solid.fea.jobs.memory import Counts, mesh_seconds, needed, reduction_seconds, refusal
+from flexstage.solid.fea.jobs.memory import Counts, needed, reduction_seconds, refusal
 from flexstage.solid.fea.jobs.worker import Call, Job
 from flexstage.solid.fea.meshing.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, WARPS, Fineness, Hold, Reduction
 from flexstage.solid.fea.solver.component import Component
@@ -148,10 +148,6 @@ class Reduce(ComponentJob):
         """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
         found = counts or self._usual
         return reduction_seconds(found, self.reduction.fineness.order, self.columns)
-
-    def spared(self) -> float:
-        """Its drawing and mesh [s]."""
-        return mesh_seconds(self._usual)
 
     def needed(self, counts: Counts) -> float:
         """Memory of the reduction [bytes]."""

@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
-from itertools import chain
 from typing import Any, Generic, Self, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
@@ -26,8 +25,6 @@ from flexstage.solid.fea.jobs.worker import Job, work
 
 _MOST_WORKERS = 2
 _PAUSE = 0.02
-WAITED = 2.5
-"""A job that takes less than so many times what it is spared by the process that did the like last waits for it where it is busy."""
 _TELL_EVERY = 0.5
 _MESHED = frozenset(Stage) - {Stage.STARTING, Stage.DRAWING, Stage.MESHING}
 
@@ -70,16 +67,6 @@ class Pool:
     def __exit__(self, *_error: object) -> None:
         for worker in tuple(self.idle):
             self.end(worker)
-
-    def choose(self, jobs: Iterable[Job]) -> int | None:
-        """Which of the jobs waiting is next: the first, but for those whose likes a busy process has done last, where there are others.
-
-        None where all that are left wait for such a process: they take little longer there than they are spared.
-        """
-        known = [(number, job, self._latest.get(job.kin)) for number, job in enumerate(jobs)]
-        free = (number for number, _, owner in known if owner is None or owner in self.idle)
-        worth = (number for number, job, _ in known if job.seconds() >= WAITED * job.spared())
-        return next(chain(free, worth), None)
 
     def worker(self, job: Job) -> Worker:
         """A process for a job: one that waits, best that which did the like last, else a new one. Raises `OSError` where none starts."""
@@ -190,10 +177,7 @@ class _Run(Generic[AnyJob]):
         """Go on until nothing waits and nothing runs."""
         while self.waiting or self.children:
             while self.waiting and len(self.children) < workers(self.limits):
-                number = self.pool.choose(job for job, *_ in self.waiting)
-                if number is None:
-                    break
-                self._start(*self.waiting.pop(number))
+                self._start(*self.waiting.pop(0))
             self._hear()
             for child in tuple(self.children):
                 self._check_time(child)

@@ -59,10 +59,6 @@ class Job(ABC):
         """What it usually takes on one core [s], before or after its mesh is known."""
         return USUAL_SECONDS
 
-    def spared(self) -> float:
-        """How much less it usually takes [s] by a process that did the like before."""
-        return 0.0
-
     @abstractmethod
     def work(self, call: Call) -> Any:
         """Do it."""

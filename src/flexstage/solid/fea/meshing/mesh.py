@@ -17,7 +17,7 @@ from flexstage.base.session import SESSION
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.cad import Cad, cad, cut_component, half_extents, region
 from flexstage.solid.fea.geometry.mirror import Mirrors
-from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, span, thinnest
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, coordinates, span, thinnest
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.jobs.progress import Report, Stage, silent
 from flexstage.solid.fea.meshing.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, Fineness
@@ -280,9 +280,8 @@ def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: f
 
 def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list[float]:
     """Sizes of the pieces a face belongs to: links it lies on as a whole, bodies that hold its centre."""
-    middle = face.center  # worked out each time it is asked for
-    centre = np.array([[middle.x, middle.y, middle.z]]) / MILLIMETRES
-    corners = np.array([[vertex.p.x, vertex.p.y, vertex.p.z] for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
+    centre = coordinates(face.center)[None] / MILLIMETRES
+    corners = np.array([coordinates(vertex.p) for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
     held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
     # A wall of a block around the end of a hinge has its centre on the hinge.
     whole = [piece.body is not None or bool(np.all(region(piece, corners) <= _WITHIN)) for piece in pieces]

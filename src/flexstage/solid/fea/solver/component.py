@@ -117,8 +117,7 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
     """
     result: dict[str, tuple[int, ...]] = {}
     for number, piece in enumerate(component.pieces):
-        name = piece.name if piece.body is None else piece.body
-        result[name] = (*result.get(name, ()), number)
+        result[piece.owner] = (*result.get(piece.owner, ()), number)
     return result
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.solid.fea.solver.assemble import Placed
+from flexstage.solid.fea.solver.component import groups
 
 
 def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
@@ -86,8 +87,5 @@ def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
     [('B/tip', [0, 1, 2]), ('B/front', [1, 2, 3])]
     """
     skin = item.element.skin
-    names: dict[str, list[int]] = {}
-    for number, piece in enumerate(item.component.pieces):
-        names.setdefault(piece.name if piece.body is None else piece.body, []).append(number)
-    for name, numbers in names.items():
+    for name, numbers in groups(item.component).items():
         yield name, np.unique(skin.triangles[np.isin(skin.owner, numbers)])

@@ -6,8 +6,6 @@ import numpy as np
 
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.base.number import Array
-from flexstage.base.units.quantity import Quantity
-from flexstage.base.units.unit import show
 from flexstage.show.display import format_value
 from flexstage.show.table import Cell, Column, Mark, Table, make_table, result_table
 from flexstage.studies.optimisation.result import Contradiction, Front, Optimum, Start
@@ -45,11 +43,7 @@ def _notes(*, interrupted: bool, idle: tuple[str, ...]) -> list[str]:
 
 
 def _value_texts(study: Study, values: Array) -> list[str]:
-    return [_value(float(value), each.quantity, relative=each.relative) for each, value in zip(study.variables, values, strict=True)]
-
-
-def _value(value: float, quantity: Quantity, *, relative: bool) -> str:
-    return f"{100.0 * (value - 1.0):+.4g} %" if relative else show(value, quantity, digits=6)
+    return [each.text(float(value)) for each, value in zip(study.variables, values, strict=True)]
 
 
 def _objective(found: Optimum) -> Table:
@@ -83,8 +77,7 @@ def _variables(found: Optimum) -> Table:
     shown = [_value_texts(study, values) for values in columns]
     rows = []
     for index, each in enumerate(study.variables):
-        ends = [_value(end, each.quantity, relative=each.relative) for end in (each.low, each.high)]
-        rows.append((Cell(each.name, Mark.STRONG), ends[0], *(texts[index] for texts in shown), ends[1]))
+        rows.append((Cell(each.name, Mark.STRONG), each.text(each.low), *(texts[index] for texts in shown), each.text(each.high)))
     return make_table("Variables", ["variable", Column("from"), *heads, Column("to")], rows)
 
 

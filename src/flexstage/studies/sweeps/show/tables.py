@@ -73,8 +73,8 @@ def share_table(found: Effects) -> Table:
     for row, variable in enumerate(found.variables):
         cells: list[Cell | str] = [Cell(variable, Mark.STRONG)]
         for column in range(len(found.responses)):
-            cells.append(_share(float(found.first[row, column])))
-            cells += [] if found.total is None else [_share(float(found.total[row, column]))]
+            cells.append(share_cell(float(found.first[row, column])))
+            cells += [] if found.total is None else [share_cell(float(found.total[row, column]))]
         rows.append(cells)
     note = "Alone: share of the response's variance by the variable alone"
     note += "; in all: with its interactions." if found.total is not None else "; what is left is interaction."
@@ -95,7 +95,7 @@ def pair_table(found: Effects) -> Table:
     rows = [
         [
             Cell(f"{found.variables[first]}, {found.variables[second]}", Mark.STRONG),
-            *(_share(float(each)) for each in found.pairs[first, second]),
+            *(share_cell(float(each)) for each in found.pairs[first, second]),
         ]
         for first, second in shown_pairs
     ]
@@ -107,10 +107,16 @@ def pair_table(found: Effects) -> Table:
     )
 
 
-def _share(value: float) -> Cell:
+def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
+    """A share of a variance in percent, with a bar as long.
+
+    >>> share_cell(0.25).text, share_cell(float("nan")).text
+    ('25.0 %', '-')
+    """
     if not np.isfinite(value):
         return Cell("-", Mark.FAINT)
-    return Cell(f"{round(100.0 * value, 1) + 0.0:.1f} %", Mark.STRONG if value > 0.1 else Mark.PLAIN, bar=float(np.clip(value, 0.0, 1.0)))
+    text = form.format(round(100.0 * value, 1) + 0.0)
+    return Cell(text, Mark.STRONG if value > 0.1 else Mark.PLAIN, bar=float(np.clip(value, 0.0, 1.0)))
 
 
 def failure_table(results: Results) -> Table:

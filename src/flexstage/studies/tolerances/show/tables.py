@@ -8,7 +8,7 @@ from flexstage.base.number import Array
 from flexstage.show.display import display_unit_of, format_value, number
 from flexstage.show.table import Cell, Column, Mark, Table, make_table, result_table
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.sweeps.show.tables import failure_table
+from flexstage.studies.sweeps.show.tables import failure_table, share_cell
 from flexstage.studies.tolerances.allowance import Allowance
 from flexstage.studies.tolerances.crosstalk import OPEN
 from flexstage.studies.tolerances.distribution import Distribution, Shape
@@ -116,17 +116,10 @@ def share_table(found: Toleranced) -> Table:
         trusted = bool(spread.trusted[column])
         sampled |= not trusted
         shares = (spread.by_slope if trusted else spread.by_sample)[:, column]
-        rows.append((Cell(name, Mark.STRONG), *(_share(float(value), exact=trusted) for value in shares)))
+        rows.append((Cell(name, Mark.STRONG), *(share_cell(float(value), "{:.1f}" if trusted else "~{:.1f}") for value in shares)))
     heads: list[Column | str] = ["response", *(Column(each.name, "%") for each in found.study.scatters)]
     about = "~: from copies in which it scatters alone, over the sum of all such variances."
     return make_table("What does it", heads, rows, notes=["Shares of the variance, by exact derivatives.", *([about] if sampled else [])])
-
-
-def _share(value: float, *, exact: bool) -> Cell:
-    if not np.isfinite(value):
-        return Cell("-", Mark.FAINT)
-    text = f"{'' if exact else '~'}{100.0 * value:.1f}"
-    return Cell(text, Mark.STRONG if value > 0.1 else Mark.PLAIN, bar=float(np.clip(value, 0.0, 1.0)))
 
 
 def allowance_table(found: Toleranced) -> Table:
