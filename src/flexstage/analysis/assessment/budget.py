@@ -62,17 +62,13 @@ def budget(
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))
     temperature = float(warmed is not None) if temperature is None else temperature
     corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
-    lost, finite, resolution = (
-        lost_motion(kinematics, model),
-        map_error_at(mechanism, kinematics, corners),
-        pose_resolution(mechanism, kinematics),
-    )
+    lost, finite = lost_motion(kinematics, model), map_error_at(mechanism, kinematics, corners)
+    resolution, steps = pose_resolution(mechanism, kinematics), _steps(assembly, kinematics.actuators)
     half = np.abs(stack(list(command.values()))) if command else np.zeros(0)
     carry = transport(point - assembly.bodies[PLATFORM].reference)
-    loss, cross, left = (
-        _times(np.abs(carry @ each), half) for each in _command_errors(kinematics, lost, command_columns(kinematics, command))
-    )
-    seen, steps = carry @ resolution.inverse.values, _steps(assembly, kinematics.actuators)
+    errors = _command_errors(kinematics, lost, command_columns(kinematics, command))
+    loss, cross, left = (_times(np.abs(carry @ each), half) for each in errors)
+    seen = carry @ resolution.inverse.values
     common = [
         np.max(np.abs((carry @ finite.errors[..., None])[..., 0]), axis=0),
         coverage * np.sqrt(_times(seen**2, resolution.gauge_noise**2)),
@@ -82,10 +78,11 @@ def budget(
     ]
     sources = (*SOURCES, STEPS)[: 2 + len(common)]
     units = tuple((unit,) * len(sources) for unit in TWIST_UNITS)
-    tables = [Matrix(stack([*own, *common]), COMPONENTS, sources, units) for own in ((loss, cross), (np.zeros(6), left))]
-    missing = tuple(name for index, name in enumerate(sources) if np.any(np.isnan(tables[0].values[..., index])))
+    plain, corrected = (Matrix(stack([*own, *common]), COMPONENTS, sources, units) for own in ((loss, cross), (np.zeros(6), left)))
+    missing = tuple(name for index, name in enumerate(sources) if np.any(np.isnan(plain.values[..., index])))
     ground = None if warmed is None else warmed.ground
-    return ErrorBudget(*tables, dict(command), temperature, missing, f"{lost.provenance}; {finite.provenance}", ground, coverage, reasons)
+    provenance = f"{lost.provenance}; {finite.provenance}"
+    return ErrorBudget(plain, corrected, dict(command), temperature, missing, provenance, ground, coverage, reasons)
 
 
 def _command_errors(kinematics: Kinematics, lost: LostMotion, columns: list[int]) -> tuple[Array, Array, Array]:
