@@ -151,7 +151,9 @@ def _rings(axes: Any, found: tuple[Ring, ...]) -> None:
     for radius in sorted({round(ring.radius, 6) for ring in found}):
         axes.plot(radius * np.cos(circle), radius * np.sin(circle), color=MUTED, linewidth=0.5, linestyle=(0, (8, 3, 1.5, 3)))
         between = np.deg2rad(next(ring.first + 0.5 * ring.step for ring in found if round(ring.radius, 6) == radius))
-        axes.text(radius * np.cos(between), radius * np.sin(between), f"R {number(radius)}", ha="center", va="center", fontsize=7, bbox=_PLATE)
+        axes.text(
+            radius * np.cos(between), radius * np.sin(between), f"R {number(radius)}", ha="center", va="center", fontsize=7, bbox=_PLATE
+        )
 
 
 def _ray(axes: Any, angle: float, radius: float) -> None:
