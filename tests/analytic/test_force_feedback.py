@@ -199,7 +199,8 @@ def test_stiffness_at_rest_is_that_of_legs_with_what_is_left_of_theirs():
         K = model.stiffness_matrix.copy()
         for leg in felt:
             stretch, axial = np.asarray(model.stiffness[leg.link].operator)[0], leg.stiffness
-            K -= (1.0 - law.left_at_rest) * axial * np.outer(stretch, stretch)
+            left = 1.0 / (1.0 + law.gain / (2.0 * np.pi * law.corner)) if order == 1 else 1.0
+            K -= (1.0 - left) * axial * np.outer(stretch, stretch)
         rows = [[each.name for each in model.outputs].index(f"platform.{name}") for name in told.coordinates]
         seen = model.output[rows]
         soft, stiff = (np.diag(seen @ np.linalg.solve(matrix, seen.T)) for matrix in (K, model.stiffness_matrix))

@@ -93,20 +93,23 @@ def _filtered(rate, **settings):
     return integral_loop(150.0, given)
 
 
-@pytest.mark.parametrize("rate", [5e3, None])
-def test_gauge_noise_is_its_integral(rate):
-    """White before lag and filter: |H(e^{j omega T}) F(j omega)|^2 n^2 over all frequencies."""
-    closed = _filtered(rate)
-    found = noise_budget(closed, {}, (1.0, 400.0), OUTPUTS)
-    rates = closed.system.poles if rate is None else np.log(closed.system.poles[np.abs(closed.system.poles) > 1e-9].astype(complex)) * rate
+def _gauge_square(closed, aliases):
+    """Mean squares (p,) of a gauge's noise, white before lag and filter: |H(e^{j omega T}) F(j omega)|^2 n^2 over all frequencies."""
+    rate, poles = closed.plant.hardware.rate, closed.system.poles
+    rates = poles if rate is None else np.log(poles[np.abs(poles) > 1e-9].astype(complex)) * rate
     ends = [np.array([0.0]), _panels(1e-6, 1e6, np.concatenate([closed.plant.system.poles, rates]))]
     near = ends[1][ends[1] < 2500.0]
-    ends += [np.abs(number * rate + sign * near) for number in range(1, 6) for sign in (-1.0, 1.0)] if rate else []
+    ends += [np.abs(number * rate + sign * near) for number in range(1, aliases) for sign in (-1.0, 1.0)]
     nodes, weights = quadrature(np.unique(np.concatenate(ends)))
     through = sensor_filter(closed.plant).transfer(nodes)
     size = np.abs(select(closed.system, ["noise.S"], OUTPUTS).transfer(nodes) @ through)[:, :, 0] ** 2
-    square = weights @ size * closed.plant.hardware.sensors["S"].noise_density ** 2
-    assert np.allclose(square, _square(closed, Kind.GAUGE, "S", found), atol=0.0, rtol=2e-6)
+    return weights @ size * closed.plant.hardware.sensors["S"].noise_density ** 2
+
+
+def test_gauge_noise_is_its_integral():
+    closed = _filtered(5e3)
+    found = noise_budget(closed, {}, (1.0, 400.0), OUTPUTS)
+    assert np.allclose(_gauge_square(closed, 6), _square(closed, Kind.GAUGE, "S", found), atol=0.0, rtol=2e-6)
 
 
 def test_what_enters_at_the_samples_is_its_integral():
@@ -127,8 +130,8 @@ def test_what_enters_at_the_samples_is_its_integral():
 
 
 def test_fast_samples_are_a_continuous_loop():
-    """Gauge and amplifier noise at 200 kHz, and without samples."""
-    continuous = noise_budget(_filtered(None), {}, (1.0, 400.0), OUTPUTS)
+    """Gauge and amplifier noise at 200 kHz, and over all frequencies of the loop without samples, which has no budget."""
+    continuous = _filtered(None)
     given = sampling_chain(
         parallelogram(),
         rate=2e5,
@@ -136,8 +139,13 @@ def test_fast_samples_are_a_continuous_loop():
         gauges=GaugeSettings(filter_order=2, filter_corner=1500.0),
     )
     fast = noise_budget(integral_loop(150.0, given), {}, (1.0, 400.0), OUTPUTS)
-    for kind, name in ((Kind.GAUGE, "S"), (Kind.AMPLIFIER, "B")):
-        assert np.allclose(_square(None, kind, name, fast), _square(None, kind, name, continuous), atol=0.0, rtol=2e-3)
+    assert np.allclose(_square(None, Kind.GAUGE, "S", fast), _gauge_square(continuous, 0), atol=0.0, rtol=2e-3)
+    nodes, weights = quadrature(_panels(1e-4, 2e5, np.concatenate([continuous.plant.system.poles, continuous.system.poles])))
+    driven = np.abs(DisturbanceResponse(continuous, ("B",), OUTPUTS).at(nodes)[:, :, 0]) ** 2
+    density = continuous.plant.hardware.amplifiers["B"].noise_density
+    assert np.allclose(_square(None, Kind.AMPLIFIER, "B", fast), weights @ driven * density**2, atol=0.0, rtol=2e-3)
+    with pytest.raises(DesignError, match="it is continuous"):
+        noise_budget(continuous, {}, (1.0, 400.0), OUTPUTS)
 
 
 def test_noise_left_by_a_step():

@@ -13,7 +13,7 @@ from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.creep import LogCreep
 from flexstage.control.hysteresis.models.envelope import Envelope, straight
 from flexstage.control.hysteresis.models.inverse import inverse
-from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii, proportional
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.stack import dump_hysteresis, dumps_hysteresis, load_hysteresis, loads_hysteresis, stack_hysteresis
 from tests.conftest import examples
 from tests.laws.hystereses import models
@@ -79,7 +79,7 @@ def test_mistakes_are_named(text, words):
 
 def test_a_file_holds_one_stack():
     with pytest.raises(DesignError, match="has 2 axes"):
-        stack_hysteresis(proportional([1e-7, 2e-7]))
+        stack_hysteresis(PrandtlIshlinskii(np.zeros((2, 1)), np.array([[1e-7], [2e-7]])))
 
 
 def test_what_is_read_can_be_inverted():

@@ -11,7 +11,7 @@ from typing import Annotated, Any, TypeAlias
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.units.quantity import ACCELERATION_NOISE, NOISE_DENSITY, RATIO, VELOCITY_NOISE
 from flexstage.control.study.choices import Axes, Compensation, Criterion, Following
-from flexstage.control.study.file import Change, read_setup
+from flexstage.control.study.file import SetupChange, read_setup
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.tuning.objective import TuningObjective
 from flexstage.models.theory import Model
@@ -119,33 +119,27 @@ class LoopOptions:
 
     def read(self) -> tuple[LoopSetup, list[Finding]]:
         """The set-up without the options that are wrong, and what is wrong with these."""
-        changes, findings = dict[str, Change](), list[Finding]()
+        changes, findings = dict[str, SetupChange](), list[Finding]()
         for each in (self._plain(), self._compensate(), self._floor(), self._trajectory(), self._amplifier()):
             try:
                 changes |= dict(each)
             except DesignError as error:
                 findings += error.findings
-        while True:
-            try:
-                return read_setup(self.setup, changes), findings
-            except DesignError as error:
-                wrong = {address: each for each in error.findings for address in changes if each.where.startswith(address)}
-                if not wrong:
-                    raise DesignError([*findings, *error.findings]) from None
-                findings += [Finding(changes.pop(address).option, each.what, each.advice) for address, each in wrong.items()]
+        found, wrong = read_setup(self.setup, changes)
+        return found, [*findings, *wrong]
 
-    def _plain(self) -> Iterator[tuple[str, Change]]:
+    def _plain(self) -> Iterator[tuple[str, SetupChange]]:
         given = vars(self)
         for name, address in _ADDRESSES.items():
             if (value := given[name]) is not None:
-                yield address, Change(f"--{name.replace('_', '-')}", value.value if isinstance(value, Enum) else value)
+                yield address, SetupChange(f"--{name.replace('_', '-')}", value.value if isinstance(value, Enum) else value)
         if self.seconds is not None:
-            yield "seconds", Change("--seconds", f"{self.seconds!r} s")
+            yield "seconds", SetupChange("--seconds", f"{self.seconds!r} s")
         if self.hysteresis is not None:
             is_width = first_that_parses(self.hysteresis, {"width": RATIO}) is not None
-            yield "hysteresis", Change("--hysteresis", {"width" if is_width else "file": self.hysteresis})
+            yield "hysteresis", SetupChange("--hysteresis", {"width" if is_width else "file": self.hysteresis})
 
-    def _compensate(self) -> Iterator[tuple[str, Change]]:
+    def _compensate(self) -> Iterator[tuple[str, SetupChange]]:
         words, known = self.feedforward or (), [each.value for each in Compensation]
         require(
             Finding(f"--feedforward {word}", "this is no feedforward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
@@ -153,33 +147,33 @@ class LoopOptions:
             if word not in known and (word != _NOTHING or len(words) > 1)
         )
         if words:
-            yield "compensate", Change("--feedforward", [word for word in words if word != _NOTHING])
+            yield "compensate", SetupChange("--feedforward", [word for word in words if word != _NOTHING])
 
-    def _floor(self) -> Iterator[tuple[str, Change]]:
+    def _floor(self) -> Iterator[tuple[str, SetupChange]]:
         for text in self.floor or ():
             axis, sign, value = (part.strip() for part in text.rpartition("="))
             if sign and axis not in _AXES:
                 raise refuse(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three")
             shaking = _shaking(text, value)
-            yield from ((f"floor.{each}", Change(f"--floor {text}", shaking)) for each in _AXES if not sign or each == axis)
+            yield from ((f"floor.{each}", SetupChange(f"--floor {text}", shaking)) for each in _AXES if not sign or each == axis)
 
-    def _trajectory(self) -> Iterator[tuple[str, Change]]:
+    def _trajectory(self) -> Iterator[tuple[str, SetupChange]]:
         word = self.trajectory
-        if word is not None:
-            is_file = word.lower().endswith(".csv")
-            stated = {"kind": "file", "file": word} if is_file else {"kind": word}
-            yield "trajectory", Change("--trajectory", lambda old: old if old and old.get("kind") == word else stated)
+        is_file = word is not None and word.lower().endswith(".csv")
+        if word is not None or self.amplitude is not None:
+            stated = {"kind": "file", "file": word} if is_file else {"kind": word or "step"}
+            yield "trajectory", SetupChange("--trajectory", lambda old: old if old and word in (None, old.get("kind")) else stated)
         if self.amplitude is not None:
             sizes = {
                 name: f"{size!r} {'rad' if name.startswith('r') else 'm'}" for name, size in motions(self.amplitude, "--amplitude").items()
             }
-            yield "trajectory.amplitude", Change("--amplitude", sizes)
+            yield "trajectory.amplitude", SetupChange("--amplitude", sizes)
 
-    def _amplifier(self) -> Iterator[tuple[str, Change]]:
+    def _amplifier(self) -> Iterator[tuple[str, SetupChange]]:
         values = Values()
         found = amplifier_values(values, self.amplifier or ())
         require(values.findings)
-        yield from ((f"amplifier.{name}", Change("--amplifier", f"{value!r} {_UNITS[name]}")) for name, value in found.items())
+        yield from ((f"amplifier.{name}", SetupChange("--amplifier", f"{value!r} {_UNITS[name]}")) for name, value in found.items())
 
 
 def _shaking(text: str, value: str) -> dict[str, Any]:

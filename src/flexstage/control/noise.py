@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.dynamics.random_response import Spectrum, quadrature, spectrum_findings
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -120,6 +120,8 @@ def noise_budget(
     (['gauge noise', 'gauge rounding', 'floor'], True)
     """
     require_stable(closed, "rms values")
+    if closed.step is None:
+        raise refuse("loop", "it is continuous, and its noise is that of samples", "State the sampling rate")
     require([*spectrum_findings(floor, band), *_findings(floor)] if floor else _findings(floor))
     outputs = tuple(f"relative.{name}" for name in COMPONENTS) if outputs is None else outputs
     gauges = closed.plant.gauges
@@ -158,8 +160,6 @@ def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven
     """Rms changes (g,) of readings from sample to sample, in their steps: white sources through y[k] - y[k-1], and what is `driven`."""
     gauges = closed.plant.gauges
     steps = np.array([closed.plant.hardware.sensors.get(name, Sensor()).resolution for name in gauges])
-    if closed.step is None:
-        return np.full(len(gauges), np.nan)
     states, count = len(readings.A), len(gauges)
     A = np.block([[readings.A, np.zeros((states, count))], [readings.C, np.zeros((count, count))]])
     B, C = np.vstack([readings.B, readings.D]), np.hstack([readings.C, -np.eye(count)])
@@ -177,9 +177,8 @@ def _sum_by_source(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, 
 
 def _white_density(white: System, sources: tuple[Source, ...], frequencies: Array) -> Array:
     """One-sided densities (f, p, k) of white sources: 2 T |H|^2, or 2 |H|^2 of a continuous loop; none above half the sampling rate."""
-    size = 2.0 * np.abs(white.sweep(frequencies)) ** 2
-    if white.step is not None:
-        size = np.where((frequencies <= 0.5 / white.step)[:, None, None], white.step * size, 0.0)
+    step = white.step or np.nan
+    size = np.where((frequencies <= 0.5 / step)[:, None, None], 2.0 * step * np.abs(white.sweep(frequencies)) ** 2, 0.0)
     return _sum_by_source(size, sources)[0]
 
 
@@ -232,10 +231,9 @@ class DisturbanceResponse:
 def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float]) -> Array:
     """Ends of the panels [Hz]: around every resonance of stage and loop, those of a sampled loop mirrored at multiples of its rate."""
     low, high = band
-    step = closed.step
+    step = closed.step or np.nan
     near = points_around(rates_of(closed.system.poles, step))
-    if step is not None:
-        near = np.concatenate([np.abs(number / step + sign * near) for number in range(int(high * step) + 2) for sign in (1.0, -1.0)])
+    near = np.concatenate([np.abs(number / step + sign * near) for number in range(int(high * step) + 2) for sign in (1.0, -1.0)])
     stage = points_around(rates_of(closed.plant.system.poles, None))
     coarse = np.geomspace(low, high, 2 + int(_PER_DECADE * np.log10(high / low)))
     knots = [np.asarray(spectrum.frequencies) for spectrum in floor.values() if spectrum.frequencies is not None]
@@ -256,10 +254,10 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     bare = [name for name, sensor in sensors.items() if sensor.noise_density and np.isinf(sensor.bandwidth) and not sensor.filter_order]
     if silent:
         yield f"no noise is stated of {', '.join(silent)}: counted as none"
-    if bare and closed.step is not None:
-        end = f"half the sampling rate, {0.5 / closed.step:g} Hz"
+    if bare:
+        end = f"half the sampling rate, {0.5 / (closed.step or np.nan):g} Hz"
         yield f"{', '.join(bare)}: neither bandwidth nor filter is stated; noise is taken to end at {end}"
-    if len(bare) < len(sensors) - len(silent) and closed.step is not None:
+    if len(bare) < len(sensors) - len(silent):
         yield "gauge noise is white before the gauge's lag and filter; what passes them above half the sampling rate is aliased, exactly"
     if budget.slowly_rounding:
         units = {channel.name: channel.unit for channel in given.coordinates.readings()}
@@ -274,8 +272,6 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
             f"{most:.2g} steps rms at most, where half a step is needed; it is slow and correlated, and a reading at rest may stay off "
             f"by half a step, {half}, which no loop sees"
         )
-    if closed.step is None and any(sensor.resolution for sensor in sensors.values()):
-        yield "a continuous loop rounds nothing: rounding of gauges and converters is left out"
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
     if quiet:
         yield f"no amplifier noise is stated of {', '.join(quiet)}: counted as none"

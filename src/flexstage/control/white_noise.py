@@ -86,21 +86,17 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
 
 
 def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
-    """The closed loop driven by unit white inputs, and whose each input is.
+    """The closed loop driven by unit white inputs, and the source of each input.
 
-    Sampled: gauge noise is white before lag and filter and comes to the samples as these leave it, aliased exactly; without either, it is
+    Gauge noise is white before lag and filter and comes to the samples as these leave it, aliased exactly; without either, it is
     taken to end at half the sampling rate. Rounding is white with step^2/12. Amplifier noise drives the stage between the samples too,
-    and is left out here where no amplifier lag bounds it. Continuous: no rounding; what is not bounded is left out.
+    and is left out here where no amplifier lag bounds it.
 
     >>> from flexstage.control.example import integral_loop
     >>> system, sources = white_system(integral_loop(), ("relative.x",))
     >>> [source.kind.value for source in sources], system.output_names
     (['gauge noise', 'gauge rounding'], ('relative.x',))
     """
-    return _continuous_white(closed, outputs) if closed.step is None else _sampled_white(closed, outputs)
-
-
-def _sampled_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     given, systems, links, inputs, sources = closed.plant, [], {}, [], []
     for name in given.gauges:
         sensor, terms = given.hardware.sensors.get(name, Sensor()), {}
@@ -174,23 +170,3 @@ def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...
     felt = [*(f"gap.{name}" for name in given.gauges), *(name for name in outputs if name in given.system.output_names)]
     noisy = [name for name in given.actuators if name in given.hardware.amplifiers and given.hardware.amplifiers[name].noise_density]
     return tuple(name for name in noisy if not np.any(select(given.system, [name], felt).D))
-
-
-def _continuous_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
-    given = closed.plant
-    densities = {Kind.GAUGE: {name: given.hardware.sensors.get(name, Sensor()).noise_density for name in given.gauges}}
-    densities[Kind.AMPLIFIER] = {name: given.hardware.amplifiers.get(name, Amplifier()).noise_density for name in given.actuators}
-    parts = {Source(kind, name): value / np.sqrt(2.0) for kind, each in densities.items() for name, value in each.items() if value}
-    links = {f"noise.{name}": {} for name in (*given.gauges, *given.actuators)}
-    links |= {f"noise.{name}": {f"filtered.{name}": 1.0} for name in given.gauges}
-    entry = {f"noise.{name}": f"white.{name}" for name in (*given.gauges, *given.actuators)}
-    before = replace(sensor_filter(given), inputs=given.coordinates.readings("before."))
-    links |= {f"before.{name}": {} for name in given.gauges}
-    for source, size in parts.items():
-        place = f"before.{source.channel}" if source.kind is Kind.GAUGE else f"noise.{source.channel}"
-        links[place] = {entry[f"noise.{source.channel}"]: size}
-    inputs = tuple(Channel(f"white.{source.channel}", "1") for source in parts)
-    noises = [f"noise.{name}" for name in (*given.gauges, *given.actuators)]
-    whole = connect([select(closed.system, noises, outputs), before], links, inputs, outputs)
-    kept = [channel.name for column, channel in enumerate(inputs) if not np.any(whole.D[:, column])]
-    return select(whole, kept, outputs), tuple(source for source in parts if f"white.{source.channel}" in kept)

@@ -89,7 +89,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         return _write_example(context.params["design"], example)
     exports = export or []
     require_names(exports, hardware)
-    require_writable(list(written_files(exports, hardware)))
+    own = [(f"--{name}", context.params[name]) for name in ("json", "xlsx", "report")]
+    require_writable([*own, *written_files(exports, hardware)])
     texts = RecordTexts(inputs, outputs, channels, units, arrays=arrays, accept_fault=accept_fault)
     if not record:
         texts.require_unsaid()

@@ -71,16 +71,6 @@ class ForceFeedback:
         return System(A, np.eye(count)[:, :1], top[None, :], np.zeros((1, 1)), (tension,), (stroke,))
 
     @property
-    def left_at_rest(self) -> float:
-        """The share of a leg's axial stiffness that is left at rest: a / (a + g), or all of it.
-
-        >>> round(ForceFeedback(gain=2.0 * np.pi * 9.0, corner=1.0, order=1).left_at_rest, 6)
-        0.1
-        """
-        turning = 2.0 * np.pi * self.corner
-        return turning / (turning + self.gain) if self.order == 1 else 1.0
-
-    @property
     def kept_below(self) -> float:
         """Below this frequency [Hz] a leg keeps more than half of its axial stiffness, |G| < 1: a^2 / (2 pi g); 0 of order 1 with g > a."""
         turning = 2.0 * np.pi * self.corner

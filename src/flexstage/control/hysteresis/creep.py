@@ -78,24 +78,6 @@ class Creep:
         risen = -np.expm1(-np.asarray(times, dtype=float)[:, None, None] / self.times)
         return self.instant + np.sum(self.gains * risen, axis=-1)
 
-    def settle(self, value: Array) -> Array:
-        """States (axes, m) after u = `value` (axes,) for ever: what a run starts from without creeping."""
-        return np.broadcast_to(np.asarray(value, dtype=float)[:, None], self.times.shape).copy()
-
-    def run(self, values: Array, step: float, state: Array | None = None) -> Array:
-        """y (k, axes) for u `values` (k, axes) held over each `step` [s], from rest or from `state` (axes, m).
-
-        >>> Creep([1.0], [0.1], [2.0]).run(np.ones((3, 1)), 1.0).ravel().round(6).tolist()
-        [1.0, 1.039347, 1.063212]
-        """
-        states = np.zeros(self.times.shape) if state is None else np.array(state, dtype=float)
-        moved = -np.expm1(-step / self.times)
-        found = np.empty_like(values, dtype=float)
-        for value, out in zip(np.asarray(values, dtype=float), found, strict=True):
-            np.add(self.instant * value, np.vecdot(self.gains, states), out=out)
-            states += moved * (value[:, None] - states)
-        return found
-
     def system(self, inputs: tuple[Channel, ...], outputs: tuple[Channel, ...]) -> System:
         """The same as a linear system, states axis by axis: what a loop is made of.
 

@@ -53,12 +53,6 @@ class Repeater:
         turned = np.exp(-2j * np.pi * np.outer(frequencies, late) * step)
         return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
 
-    def share_left(self, closed: Loop, control: System, frequencies: Array) -> Array:
-        """What is left (n, f, f) of an error that repeats at harmonics, (I - W) (I - W + L P)^-1 by the model: 0 where W is 1."""
-        own, (keep, teach) = np.eye(self.teach.shape[-1]), self.at(frequencies, closed.step or 1.0)
-        bare = own - keep[:, None, None] * own
-        return bare @ np.linalg.inv(bare + readings(closed.plant, control, frequencies) @ teach)
-
 
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
     """Filters for a `period` [s], a `gain` of the loop's inverse, all modes up to `spread` off, in the widest band where they contract.

@@ -33,17 +33,6 @@ class Shaper:
                     found[shift:] += amplitude * share * poses[: len(poses) - shift]
         return found
 
-    def residual(self, frequency: float, damping: float) -> float:
-        """What vibration of a mode is left, as a share of that after a plain step (Singer & Seering 1990, eq. 9).
-
-        >>> round(zv(100.0, 0.02).residual(100.0, 0.02), 12)
-        0.0
-        """
-        turning = 2.0 * np.pi * frequency
-        ringing = turning * np.sqrt(1.0 - damping**2)
-        grown = self.amplitudes * np.exp(damping * turning * (self.times - self.times[-1]))
-        return float(np.abs(np.sum(grown * np.exp(1j * ringing * self.times))))
-
 
 def zv(frequency: float, damping: float) -> Shaper:
     """Zero vibration: 1/(1+K) and K/(1+K) half a damped period apart, K = exp(-zeta pi / (1 - zeta^2)^(1/2)).

@@ -152,7 +152,7 @@ def zero_order_hold(given: Plant) -> System:
     ground = tuple(name for name in given.system.input_names if name.startswith(f"{GROUND}."))
     others = tuple(name for name in given.system.input_names if name not in (*actuators, *ground))
     outputs = given.system.output_names
-    driven = _delayed_inputs(select(given.system, actuators, outputs), step, given.hardware.delay, len(given.gauges))
+    driven = discretise(select(given.system, actuators, outputs), step, given.hardware.delay, len(given.gauges))
     moved, loaded = first_order_hold(select(given.system, ground, outputs), step), discretise(select(given.system, others, outputs), step)
     late = np.zeros((len(driven.A) - len(moved.A), len(ground) + len(others)))
     return replace(
@@ -161,33 +161,6 @@ def zero_order_hold(given: Plant) -> System:
         D=np.hstack([driven.D, moved.D, loaded.D]),
         inputs=(*driven.inputs, *moved.inputs, *loaded.inputs),
     )
-
-
-def _delayed_inputs(stage: System, step: float, delay: float, gauges: int) -> System:
-    """Sampled between strokes and outputs; what a gauge (the first outputs) feels of a stroke at once is that of u[k-d-1]."""
-    direct = stage.D[:gauges]
-    found = discretise(replace(stage, D=np.vstack([np.zeros_like(direct), stage.D[gauges:]])), step, delay)
-    if not np.any(direct):
-        return found
-    width, states = len(found.inputs), len(found.A)
-    if states - len(stage.A) <= int(delay / step + 1e-9) * width:
-        found = _one_more_register(found, width if states > len(stage.A) else 0)
-    C = found.C.copy()
-    C[:gauges, -width:] += direct
-    return replace(found, C=C)
-
-
-def _one_more_register(system: System, last: int) -> System:
-    """Appends what the last `last` states, or with 0 the inputs, were one sample ago."""
-    width, states = len(system.inputs), len(system.A)
-    A = np.zeros((states + width, states + width))
-    A[:states, :states] = system.A
-    B = np.vstack([system.B, np.zeros((width, width))])
-    if last:
-        A[states:, states - last : states] = np.eye(width)
-    else:
-        B[states:] = np.eye(width)
-    return replace(system, A=A, B=B, C=np.hstack([system.C, np.zeros((len(system.C), width))]))
 
 
 def _count(frequencies: Array, given: Hardware, modes: int | None, least: int) -> int:

@@ -227,10 +227,10 @@ def _tracking(closed: Loop, found: Curves, number: int) -> float:
     return _first_rise(found.frequencies, below(found.frequencies), below)
 
 
-def crosstalk(closed: Loop, frequency: float = 0.0) -> Matrix:
-    """What moves for each reference: all six motions of the platform against the ground per coordinate commanded.
+def crosstalk(closed: Loop) -> Matrix:
+    """What moves for each reference: all six motions of the platform against the ground per coordinate commanded, at rest.
 
-    At rest (`frequency` 0) with signs, at a frequency [Hz] the amplitudes. The coordinates themselves are tracking, all else is crosstalk.
+    The coordinates themselves are tracking, all else is crosstalk.
     Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
@@ -240,5 +240,4 @@ def crosstalk(closed: Loop, frequency: float = 0.0) -> Matrix:
     require_stable(closed, "crosstalk")
     names = closed.plant.coordinates.names
     chosen = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in COMPONENTS])
-    found = chosen.transfer(np.array([frequency]))[0]
-    return Matrix(np.abs(found) if frequency else found.real, COMPONENTS, names, ratio_units(TWIST_UNITS, closed.plant.coordinates.units))
+    return Matrix(chosen.transfer(np.zeros(1))[0].real, COMPONENTS, names, ratio_units(TWIST_UNITS, closed.plant.coordinates.units))

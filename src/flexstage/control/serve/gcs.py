@@ -37,11 +37,10 @@ _TRIGGERS = {0: "default setting", 1: "any command changing target position", 4:
 
 @dataclass(frozen=True)
 class Command:
-    """What answers a command, what it does in a few words, and the manual's page where it was read (empty: none of its own)."""
+    """The answer to a command, and its meaning in a few words."""
 
     answer: Callable[[Session, Sequence[str]], Iterable[str] | None]
     meaning: str
-    page: str = ""
 
 
 class Session:
@@ -461,81 +460,74 @@ def _array(words: Sequence[str], columns: Sequence[np.ndarray], names: Sequence[
     ]
 
 
-_E, _M = "E727T0005 p. ", "MS249E p. "
-
 COMMANDS: dict[str, Command] = {
-    "\x05": Command(lambda s, _: _bits(s.stage.moving), "which axes are moving", f"{_M}127"),
-    "\x07": Command(lambda _s, _: ["\xb1"], "whether a command can be taken", f"{_M}127"),
+    "\x05": Command(lambda s, _: _bits(s.stage.moving), "which axes are moving"),
+    "\x07": Command(lambda _s, _: ["\xb1"], "whether a command can be taken"),
     "\x09": Command(lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
-    "\x18": Command(_stop, "stop all axes", f"{_E}178"),
-    "*IDN?": Command(_plain(_identify), "what it is", f"{_E}178"),
-    "CSV?": Command(_plain(lambda _: ["2.0"]), "syntax version", f"{_M}136"),
-    "DRC": Command(_configure, "set data recorder configuration", f"{_E}66, 67"),
+    "\x18": Command(_stop, "stop all axes"),
+    "*IDN?": Command(_plain(_identify), "what it is"),
+    "CSV?": Command(_plain(lambda _: ["2.0"]), "syntax version"),
+    "DRC": Command(_configure, "set data recorder configuration"),
     "DRC?": Command(
         lambda s, w: [f"{t + 1}={_source(s, t)} {s.stage.recorder.options[t]}" for t in _tables(w)],
         "get data recorder configuration",
-        f"{_E}67, {_M}147",
     ),
     "DRL?": Command(
         lambda s, w: [f"{t + 1}={len(s.stage.recorder.points[t])}" for t in _tables(w)],
         "get number of recorded points",
-        f"{_E}67, {_M}147",
     ),
-    "DRR?": Command(_record, "get recorded data values", f"{_E}67, {_M}148"),
-    "DRT": Command(_set_trigger, "set data recorder trigger source", f"{_E}66, 67"),
-    "DRT?": Command(lambda s, w: [f"{t + 1}={s.trigger} 0" for t in _tables(w)], "get data recorder trigger source", f"{_E}66, 67"),
-    "ERR?": Command(_last_error, "get error number and forget it", f"{_M}207"),
-    "GWD?": Command(_wave_data, "get wave table data", f"{_E}100"),
-    "HDR?": Command(_plain(_recorder_options), "get all data recorder options", f"{_E}66, 67"),
+    "DRR?": Command(_record, "get recorded data values"),
+    "DRT": Command(_set_trigger, "set data recorder trigger source"),
+    "DRT?": Command(lambda s, w: [f"{t + 1}={s.trigger} 0" for t in _tables(w)], "get data recorder trigger source"),
+    "ERR?": Command(_last_error, "get error number and forget it"),
+    "GWD?": Command(_wave_data, "get wave table data"),
+    "HDR?": Command(_plain(_recorder_options), "get all data recorder options"),
     "HLP?": Command(_plain(_help), "get list of available commands"),
     "HLT": Command(_halt, "halt all axes"),
-    "MOV": Command(_move, "set target position", f"{_M}116"),
+    "MOV": Command(_move, "set target position"),
     "MOV?": Command(_of_axes(lambda s, a: _shown(s.target[a])), "get target position"),
     "MVR": Command(_move_by, "set target relative to current target"),
     "ONT?": Command(_of_axes(lambda s, a: str(int(s.on_target[a]))), "get on-target state"),
-    "POS?": Command(_of_axes(lambda s, a: _shown(s.position[a])), "get real position", f"{_M}116"),
+    "POS?": Command(_of_axes(lambda s, a: _shown(s.position[a])), "get real position"),
     "PUN?": Command(_of_axes(lambda s, a: s.units[a]), "get position unit"),
-    "RTR": Command(_set_record_rate, "set record table rate", f"{_E}67"),
-    "RTR?": Command(lambda s, _: [str(s.stage.recorder.rate)], "get record table rate", f"{_E}67"),
-    "SAI?": Command(_names, "get list of current axis identifiers", f"{_M}186"),
-    "SPA?": Command(_parameter, "get volatile memory parameters: the servo update time", f"{_E}108"),
-    "STE": Command(_step, "start step and response measurement", f"{_E}66"),
+    "RTR": Command(_set_record_rate, "set record table rate"),
+    "RTR?": Command(lambda s, _: [str(s.stage.recorder.rate)], "get record table rate"),
+    "SAI?": Command(_names, "get list of current axis identifiers"),
+    "SPA?": Command(_parameter, "get volatile memory parameters: the servo update time"),
+    "STE": Command(_step, "start step and response measurement"),
     "STP": Command(_stop, "stop all axes"),
     "SVO": Command(_set_axes(lambda s, axis, value: s.hold(axis, on=value == 1.0)), "set servo mode"),
     "SVO?": Command(_of_axes(lambda s, a: str(int(s.held[a]))), "get servo mode"),
-    "TMN?": Command(_of_axes(lambda s, a: _shown(s.low[a])), "get minimum commandable position", f"{_M}198"),
+    "TMN?": Command(_of_axes(lambda s, a: _shown(s.low[a])), "get minimum commandable position"),
     "TMX?": Command(_of_axes(lambda s, a: _shown(s.high[a])), "get maximum commandable position"),
-    "TNR?": Command(lambda _s, _: [str(recorder.TABLES)], "get number of record tables", f"{_E}67"),
+    "TNR?": Command(lambda _s, _: [str(recorder.TABLES)], "get number of record tables"),
     "TPC?": Command(lambda s, _: [str(len(s.stage.volts))], "get number of output channels"),
     "TSC?": Command(lambda s, _: [str(len(s.stage.readings))], "get number of input signal channels"),
-    "TSP?": Command(_signals(lambda s: 1e6 * s.readings), "get input signal position value", f"{_M}117"),
+    "TSP?": Command(_signals(lambda s: 1e6 * s.readings), "get input signal position value"),
     "TWG?": Command(lambda s, _: [str(len(s.stage.axes))], "get number of wave generators"),
-    "VCO": Command(_set_axes(lambda s, axis, value: s.is_ramped.__setitem__(axis, value == 1.0)), "set velocity control mode", f"{_E}35"),
-    "VCO?": Command(_of_axes(lambda s, a: str(int(s.is_ramped[a]))), "get velocity control mode", f"{_E}35"),
-    "VEL": Command(
-        _set_axes(lambda s, axis, value: s.velocity.__setitem__(axis, value), switches=False), "set closed-loop velocity", f"{_M}204"
-    ),
-    "VEL?": Command(_of_axes(lambda s, a: _shown(s.velocity[a])), "get closed-loop velocity", f"{_M}204"),
-    "VER?": Command(_plain(lambda _: [f"flexstage: {__version__}"]), "get versions", f"{_M}204"),
+    "VCO": Command(_set_axes(lambda s, axis, value: s.is_ramped.__setitem__(axis, value == 1.0)), "set velocity control mode"),
+    "VCO?": Command(_of_axes(lambda s, a: str(int(s.is_ramped[a]))), "get velocity control mode"),
+    "VEL": Command(_set_axes(lambda s, axis, value: s.velocity.__setitem__(axis, value), switches=False), "set closed-loop velocity"),
+    "VEL?": Command(_of_axes(lambda s, a: _shown(s.velocity[a])), "get closed-loop velocity"),
+    "VER?": Command(_plain(lambda _: [f"flexstage: {__version__}"]), "get versions"),
     "VOL?": Command(_signals(lambda s: s.volts), "get voltage of output channel"),
-    "WAV": Command(_wave, "set waveform definition", f"{_E}108"),
-    "WAV?": Command(_wave_lengths, "get waveform definition: lengths of wave tables", f"{_E}100"),
-    "WCL": Command(_clear_waves, "clear wave table data", f"{_E}100"),
+    "WAV": Command(_wave, "set waveform definition"),
+    "WAV?": Command(_wave_lengths, "get waveform definition: lengths of wave tables"),
+    "WCL": Command(_clear_waves, "clear wave table data"),
     "WGC": Command(_set_generators("cycles", lambda word: _integer(word, 0, 2**31)), "set number of wave generator cycles"),
     "WGC?": Command(_of_generators(lambda g: g.cycles), "get number of wave generator cycles"),
-    "WGO": Command(_generate, "set wave generator start/stop mode", f"{_E}66"),
+    "WGO": Command(_generate, "set wave generator start/stop mode"),
     "WGO?": Command(_of_generators(lambda g: int(g.at is not None)), "get wave generator start/stop mode"),
-    "WOS": Command(_set_generators("offset", _number, idle=True), "set wave generator output offset", f"{_E}100"),
+    "WOS": Command(_set_generators("offset", _number, idle=True), "set wave generator output offset"),
     "WOS?": Command(_of_generators(lambda g: _shown(g.offset)), "get wave generator output offset"),
     "WSL": Command(
         _set_generators("table", lambda word: _integer(word, 0, _TABLES), idle=True), "set connection of wave table to wave generator"
     ),
     "WSL?": Command(_of_generators(lambda g: g.table), "get connection of wave table"),
-    "WTR": Command(_set_wave_rate, "set wave generator table rate", f"{_E}108"),
+    "WTR": Command(_set_wave_rate, "set wave generator table rate"),
     "WTR?": Command(
         _of_generators(lambda g: f"{g.rate} {int(g.is_straight)}"),
         "get wave generator table rate",
-        f"{_E}108",
     ),
 }
 """Every command by its mnemonic; single characters by themselves."""

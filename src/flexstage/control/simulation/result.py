@@ -144,8 +144,8 @@ def simulation_result(given: Machine, found: Series) -> Simulated:
 
 
 @check_arguments
-def tracking(found: Simulated, after: float = 0.0) -> Matrix:
-    """Rms and peak of the error by coordinate from a time [s] on: as the loop sees it, and against the true pose of the platform.
+def tracking(found: Simulated) -> Matrix:
+    """Rms and peak of the error by coordinate: as the loop sees it, and against the true pose of the platform.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -155,10 +155,7 @@ def tracking(found: Simulated, after: float = 0.0) -> Matrix:
     >>> still.columns, still.values.tolist()
     (('rms', 'peak', 'true rms', 'true peak'), [[0.0, 0.0, 0.0, 0.0]])
     """
-    kept = found.times >= after
-    if not np.any(kept):
-        raise refuse("tracking", f"the simulation ends at {found.times[-1]:g} s, before {after:g} s", "Simulate for longer")
-    columns = [each for error in (found.error[kept], found.true_error[kept]) for each in (_rms(error), np.max(np.abs(error), axis=0))]
+    columns = [each for error in (found.error, found.true_error) for each in (_rms(error), np.max(np.abs(error), axis=0))]
     names = tuple(channel.name for channel in found.coordinates)
     units = tuple((channel.unit,) * 4 for channel in found.coordinates)
     return Matrix(np.stack(columns, axis=-1), names, ("rms", "peak", "true rms", "true peak"), units)
@@ -185,10 +182,10 @@ class StepFigures:
 
 
 @check_arguments
-def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0, band: Array | None = None) -> StepFigures:
+def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0) -> StepFigures:
     """Settling and overshoot of a simulated step that began at `start` [s].
 
-    The band is a `share` of each coordinate's step, or stated as `band` (f,) [m, rad]; coordinates without a step use the largest step
+    The band is a `share` of each coordinate's step; coordinates without a step use the largest step
     of their unit. The error is that of the true pose.
 
     >>> from flexstage.control.example import integral_loop
@@ -202,7 +199,7 @@ def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0, b
     step = found.reference[-1]
     units = np.array([channel.unit for channel in found.coordinates])
     largest = np.array([np.max(np.abs(step[units == unit])) for unit in units])
-    band = share * np.where(step != 0.0, np.abs(step), largest) if band is None else np.asarray(band)
+    band = share * np.where(step != 0.0, np.abs(step), largest)
     error = found.true_error
     outside = np.abs(error) > band
     last = len(error) - np.argmax(outside[::-1], axis=0)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.control.study.setup import LoopSetup
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.file import parse_toml, read_text
@@ -32,38 +32,47 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
     ...     load_setup(f"{folder}/loop.toml") == LoopSetup()
     True
     """
-    return read_setup(path, {})
+    return read_setup(path, {})[0]
 
 
 @dataclass(frozen=True)
-class Change:
+class SetupChange:
     """A raw value that goes before the file's, or a function of the file's own; `option` names it in findings."""
 
     option: str
     value: Any
 
 
-def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, Change]) -> LoopSetup:
-    """Return the set-up in a file, none: the default, with changes by address.
+def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, SetupChange]) -> tuple[LoopSetup, list[Finding]]:
+    """Return the set-up in a file, none: the default, with the changes by address that fit, and what is wrong with the others.
 
-    >>> read_setup(None, {"controller.bandwidth": Change("--bandwidth", "30 Hz")}).controller.bandwidth
+    >>> read_setup(None, {"controller.bandwidth": SetupChange("--bandwidth", "30 Hz")})[0].controller.bandwidth
     30.0
     """
-    text, where = ("", "set-up") if path is None else (read_text(path), os.fspath(path))
-    raw: dict[str, Any] = {"format": FORMAT} if path is None else parse_toml(text, where)
-    for part in (raw.get("hysteresis"), raw.get("trajectory")):
-        if path is not None and isinstance(part, dict) and isinstance(part.get("file"), str):
-            part["file"] = str(Path(path).resolve().parent / part["file"])
-    for address, change in changes.items():
-        *tables, key = address.split(".")
-        table = raw
-        for each in tables:
-            table = table.setdefault(each, {})
-            if not isinstance(table, dict):
-                break
-        else:
-            table[key] = change.value(table.get(key)) if callable(change.value) else change.value
-    return _setup_of(raw, text, where)
+    text, where = ("", "") if path is None else (read_text(path), os.fspath(path))
+    kept, wrong = dict(changes), list[Finding]()
+    while True:
+        raw: dict[str, Any] = {"format": FORMAT} if path is None else parse_toml(text, where)
+        for part in (raw.get("hysteresis"), raw.get("trajectory")):
+            if path is not None and isinstance(part, dict) and isinstance(part.get("file"), str):
+                part["file"] = str(Path(path).resolve().parent / part["file"])
+        for address, change in kept.items():
+            _apply(raw, address.split("."), change.value)
+        try:
+            return record_from(LoopSetup, raw, FORMAT), wrong
+        except DesignError as error:
+            refused = {address: each for each in error.findings for address in kept if each.where.startswith(address)}
+            if not refused:
+                raise DesignError([*wrong, *with_lines(error.findings, text, where)]) from None
+            wrong += [Finding(kept.pop(address).option, each.what, each.advice) for address, each in refused.items()]
+
+
+def _apply(table: Any, keys: list[str], value: Any) -> None:
+    """Set a value in a table of tables; what is no table is left for its own finding."""
+    if isinstance(table, dict) and len(keys) > 1:
+        _apply(table.setdefault(keys[0], {}), keys[1:], value)
+    elif isinstance(table, dict):
+        table[keys[0]] = value(table.get(keys[0])) if callable(value) else value
 
 
 def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
@@ -72,12 +81,8 @@ def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
     >>> loads_setup('format = "flexstage loop 1"\nrate = "5 kHz"').rate
     5000.0
     """
-    return _setup_of(parse_toml(text, where), text, where)
-
-
-def _setup_of(raw: dict[str, Any], text: str, where: str) -> LoopSetup:
     try:
-        return record_from(LoopSetup, raw, FORMAT)
+        return record_from(LoopSetup, parse_toml(text, where), FORMAT)
     except DesignError as error:
         raise DesignError(with_lines(error.findings, text, where)) from None
 

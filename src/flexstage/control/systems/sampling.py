@@ -12,12 +12,13 @@ from flexstage.base.number import Array
 from flexstage.control.systems.system import System
 
 
-def discretise(system: System, step: float, delay: float = 0.0) -> System:
+def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) -> System:
     """A continuous system whose inputs are held over each `step` [s] and arrive `delay` [s] late; exact at the samples.
 
     With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d],
     Gamma_0 = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled
-    Systems, 1997, section 2.3). An output sampled while the input changes (f = 0) sees the new value. All inputs are delayed alike. Raises
+    Systems, 1997, section 2.3). An output sampled while the input changes (f = 0) sees the new value, the
+    first `early` outputs the one before. All inputs are delayed alike. Raises
     `DesignError` for a system that is sampled already, and for times that cannot be.
 
     >>> from flexstage.models.linear.model import Channel
@@ -31,18 +32,20 @@ def discretise(system: System, step: float, delay: float = 0.0) -> System:
     """
     require(_findings(system, step, delay))
     whole, part = split_delay(delay / step)
-    early, start = _hold_matrices(system, (1.0 - part) * step)
+    after, start = _hold_matrices(system, (1.0 - part) * step)
     late, before = _hold_matrices(system, part * step)
-    (size, width), count = system.B.shape, whole + (part > 0.0)
-    entries, direct = np.zeros((size, (count + 1) * width)), np.zeros((len(system.D), (count + 1) * width))  # of u[k], u[k-1], ...
-    entries[:, whole * width : (whole + 1) * width] = start
+    (size, width), seen = system.B.shape, whole + (part > 0.0)
+    count = whole + 1 if np.any(system.D[:early]) else seen
+    entries, direct = np.zeros((size, count + 1, width)), np.zeros((len(system.D), count + 1, width))  # of u[k], u[k-1], ...
+    entries[:, whole] = start
     if part > 0.0:
-        entries[:, count * width :] = early @ before
-    direct[:, count * width :] = system.D
+        entries[:, whole + 1] = after @ before
+    direct[early:, seen], direct[:early, count] = system.D[early:], system.D[:early]
+    entries, direct = (each.reshape(len(each), (count + 1) * width) for each in (entries, direct))
     shift = np.hstack([np.zeros((count * width, size)), np.eye(count * width, k=-width)])
     return replace(
         system,
-        A=np.vstack([np.hstack([early @ late, entries[:, width:]]), shift]),
+        A=np.vstack([np.hstack([after @ late, entries[:, width:]]), shift]),
         B=np.vstack([entries[:, :width], np.eye(count * width, width)]),
         C=np.hstack([system.C, direct[:, width:]]),
         D=direct[:, :width],

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, freeze
-from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope, straight
+from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope
 from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 
@@ -80,13 +80,3 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
     for name, envelope in (("before", model.before), ("after", model.after)):
         if envelope.axes not in (1, model.axes):
             yield Finding(f"envelope {name}", f"it has {envelope.axes} axes, the plays {model.axes}", "Give one to each, or one to all")
-
-
-def proportional(gain: Sequence[float] | Array, offset: Sequence[float] | Array | float = 0.0) -> PrandtlIshlinskii:
-    """No hysteresis: y = `offset` + `gain` x for each axis, gain in m/V of a stack.
-
-    >>> (1e6 * proportional([1.5e-7, 2e-7]).run(np.array([[0.0, 0.0], [1000.0, 1000.0]]))[1]).round(9).tolist()
-    [150.0, 200.0]
-    """
-    gain = np.atleast_1d(np.asarray(gain, dtype=float))
-    return PrandtlIshlinskii(np.zeros((len(gain), 1)), gain[:, None], after=straight(np.ones(len(gain)), offset))

@@ -30,8 +30,8 @@ class Hysteresis(Protocol):
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
         """The next state and the output (axes,) for the next input (axes,); `state` itself is left as it is.
 
-        >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import proportional
-        >>> (1e6 * proportional([2e-7]).step(np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
+        >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+        >>> (1e6 * PrandtlIshlinskii([0.0], [2e-7]).step(np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
         [20.0]
         """
         ...
@@ -41,8 +41,8 @@ class Hysteresis(Protocol):
 
         Raises `DesignError` for inputs of another shape and for numbers that are not finite.
 
-        >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import proportional
-        >>> (1e6 * proportional([2e-7]).run(np.array([0.0, 100.0]))).round(9).tolist()
+        >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+        >>> (1e6 * PrandtlIshlinskii([0.0], [2e-7]).run(np.array([0.0, 100.0]))).round(9).tolist()
         [0.0, 20.0]
         """
         values = np.asarray(values, dtype=float)
