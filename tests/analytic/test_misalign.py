@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.loaded.misalign import critical_misalignments, misalign, misalignments, seated
+from flexstage.analysis.loaded.misalign import misalign, misalignments, seated
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.section import Rectangle
@@ -31,14 +31,14 @@ def limit() -> float:
 
 
 def test_a_guide_gives_way_at_its_critical_misalignment():
-    found = critical_misalignments(slender(), ("ry",))[0]
+    found = misalignments(slender(), ("ry",)).critical
     assert found.rows == ("left", "right")
     assert found.values[:, 0] == pytest.approx(limit(), rel=5e-5)
 
 
 def test_the_axes_are_those_of_the_link():
     turn = exponential(np.array([0.4, -1.0, 0.3]))
-    assert critical_misalignments(slender(turn), ("ry",))[0].values[:, 0] == pytest.approx(limit(), rel=5e-5)
+    assert misalignments(slender(turn), ("ry",)).critical.values[:, 0] == pytest.approx(limit(), rel=5e-5)
 
 
 def test_units_of_measurement_do_not_change_it():

@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.assessment.budget import budget
-from flexstage.analysis.assessment.error_budget import SOURCES, command_strokes, error_budget
+from flexstage.analysis.assessment.error_budget import SOURCES, command_strokes
 from flexstage.analysis.linear_statics.drift import drift
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace.gauging import pose_resolution
@@ -139,22 +139,10 @@ def test_a_batch_is_the_loop():
         np.testing.assert_allclose(together.sums.values[index], alone.sums.values, rtol=1e-6, atol=1e-14)
 
 
-def test_evidence_may_be_given_piece_by_piece():
-    """The analysis itself takes results only: the same numbers as the study's."""
-    from flexstage.analysis.assessment.error_budget import Evidence
-    from flexstage.analysis.workspace.map_error import map_error_at
-
+def test_drift_may_be_given():
+    """The same numbers as with the drift that the budget computes itself."""
     stage, command = case("hexapod"), {"z": 5e-6}
-    kinematics, model = ideal(stage), lumped(stage)
-    evidence = Evidence(
-        kinematics=kinematics,
-        lost_motion=lost_motion(kinematics, model),
-        map_error=map_error_at(stage, kinematics, command_strokes(kinematics, command)),
-        resolution=pose_resolution(stage, kinematics),
-        drift=drift(stage, model, ground="steel").of(),
-        arm=np.zeros(3),
-    )
-    found = error_budget(evidence, command, temperature=1.0)
+    found = budget(stage, command, temperature=1.0, drifted=drift(stage, lumped(stage), ground="steel"))
     np.testing.assert_allclose(found.ideal.values, budget(stage, command, temperature=1.0).ideal.values, rtol=1e-9, atol=1e-18)
 
 

@@ -126,7 +126,9 @@ def test_what_stays_on_a_path_stays():
         stage(bare=fs.StrokePath("platform.y", ("0 mm", "10 mm"), points=2, hold={"platform.rz": "0", "gravity": "off"})), "bare"
     )
     assert (locked.weight, locked.locked) == (0.0, ("platform.rz",))
-    found = locked.stroke(fs.nonlinear(stage()))
+    model = fs.nonlinear(stage())
+    rest = locked.rest(model)
+    found = fs.stroke(locked.path(model, rest), rest)
     assert found.sag is not None
     assert np.max(np.abs(found.sag.values)) < 1e-15
     assert found.along.at("2", "platform.rz") == pytest.approx(0.0, abs=1e-15)

@@ -15,23 +15,17 @@ from flexstage.base.number import Array
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.paths.critical_load import Kind
 from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.show.display import format_value, to_typography
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.stroke import stroke_figure
-from flexstage.show.page import Fact, Facts, Head, Headline, Picture, Section, page, section
+from flexstage.show.page import Head, Headline, Picture, Section, page, section
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, column_table, make_table, matrix_table, number_cells, result_table
 from flexstage.show.viewer.animation import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
-
-_MEANING = {
-    Kind.LIMIT.value: "the load cannot pass it",
-    Kind.BIFURCATION.value: "it leaves into another motion",
-}
 
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
@@ -79,23 +73,13 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | No
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
     data = buckling_data(mechanism, known, after) if known else still_data(mechanism)
     sections = [
-        section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
+        section("What gives way", buckling_tables(found)),
         None if after is None else _beyond_section(after.stroke),
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
     ]
     headline = Headline(to_typography(_buckling_text(found)), least is None or least.factor >= max(1.0, found.demand))
     said = "The shape has no size of its own: it is drawn as large as the slider says." if known else ""
     return _page(mechanism, "What gives way", found.provenance, headline, data, sections=sections, said=said)
-
-
-def _buckling_facts(case: CaseFactor) -> Facts:
-    by_itself = case.found.link if case.found is not None else ""
-    facts = [
-        Fact("factor on the load", format_value(case.factor, "1"), to_typography(f"{case.load}, {case.place}")),
-        Fact("kind", case.kind, _MEANING[case.kind]),
-        *([Fact("by itself", by_itself, "a flexure, its ends at rest")] if by_itself else []),
-    ]
-    return Facts(tuple(facts))
 
 
 def _buckling_text(found: CaseFactors) -> str:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.linear_statics.lost_motion import LostMotion
-from flexstage.analysis.workspace.gauging import PoseResolution
-from flexstage.analysis.workspace.map_error import MapError
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
@@ -19,30 +16,10 @@ from flexstage.base.record import VIEW
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.mechanism.assembly.expansion import Ground
 from flexstage.models.linear.kinematics import Kinematics
-from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, transport
+from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 STEPS = "actuator steps"
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
-
-
-@dataclass(frozen=True, eq=False)
-class Evidence:
-    """The results an error budget is drawn from.
-
-    `map_error` holds the corners of the command (see `command_strokes`); `drift` (6 x fields) is the motion of the point of interest per
-    field, of `Drift.of` (strokes held) or `held_by_gauges` (`None`: not known, as `reasons` say by source); `arm` (..., 3) [m] leads from
-    the platform's reference to that point; `steps` (..., n) [m] are those of actuators that move in steps (`None`: none; NaN: unknown).
-    """
-
-    kinematics: Kinematics
-    lost_motion: LostMotion
-    map_error: MapError
-    resolution: PoseResolution
-    drift: Matrix | None
-    arm: Array
-    ground: Ground | None = None
-    reasons: Mapping[str, str] = field(default_factory=dict[str, str])
-    steps: Array | None = None
 
 
 class ErrorBudget(Result):
@@ -72,44 +49,6 @@ class ErrorBudget(Result):
         ]
         names = ("linear", "rss", "linear corrected", "rss corrected")
         return Matrix(np.stack(columns, axis=-1), COMPONENTS, names, tuple((unit,) * 4 for unit in TWIST_UNITS))
-
-
-def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperature: Number = 0.0, coverage: float = 3.0) -> ErrorBudget:
-    """Error budget over a box of commands (half widths by coordinate [m, rad]) and a uniform temperature change [K].
-
-    Lost motion J diag(Lambda) R_a xi, crosstalk J (Lambda - diag) R_a xi with the motion outside the ideal ones; with the gains
-    a = (R_a V^+ T)^-1 R_a xi only T a - V xi is left, counted as crosstalk. Linear map: finite less linear kinematics at the corners.
-    Noise: `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Actuators that move in steps: half
-    a step of each alike, in a column that other stages do not have (evenly spread, it has a standard deviation of step/sqrt(12)). Largest
-    absolute values.
-
-    >>> from flexstage.analysis.assessment.budget import budget
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = budget(double_triangle(), {"z": 10e-6}, temperature=0.01)
-    >>> round(1e9 * float(found.ideal.at("z", "quantisation")), 3)
-    5.0
-    """
-    columns = command_columns(evidence.kinematics, command)
-    half = stack([command[name] for name in command]) if command else np.zeros(0)
-    carry = transport(evidence.arm)
-    loss, cross, left = _command_errors(evidence, columns, carry)
-    bent = np.max(np.abs((carry @ evidence.map_error.errors[..., None])[..., 0]), axis=0)
-    noise, step = coverage * _random(evidence.resolution, carry), _resolution_errors(evidence.resolution, carry)
-    warmed = np.full(6, np.nan) if evidence.drift is None else np.abs(evidence.drift.values[..., :, 0]) * np.abs(temperature)
-    stepped = (
-        () if evidence.steps is None else ((np.abs(carry @ evidence.lost_motion.gain.values) @ (0.5 * evidence.steps)[..., None])[..., 0],)
-    )
-    common = (bent, noise, step, warmed, *stepped)
-    rows = {
-        False: (_largest(loss, half), _largest(cross, half), *common),
-        True: (np.zeros(6), _largest(left, half), *common),
-    }
-    found = {key: _table(values) for key, values in rows.items()}
-    missing = tuple(name for index, name in enumerate(found[False].columns) if np.any(np.isnan(found[False].values[..., index])))
-    provenance = f"{evidence.lost_motion.provenance}; {evidence.map_error.provenance}"
-    return ErrorBudget(
-        found[False], found[True], dict(command), temperature, missing, provenance, evidence.ground, coverage, evidence.reasons
-    )
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:
@@ -143,33 +82,3 @@ def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, de
     mapping = kinematics.mapping.values[..., columns]
     lead = (len(signs), *(1,) * max(depth, mapping.ndim - 2, half.ndim - 1), len(columns))
     return (mapping @ (signs.reshape(lead) * half)[..., None])[..., 0]
-
-
-def _command_errors(evidence: Evidence, columns: list[int], carry: Array) -> tuple[Array, Array, Array]:
-    """Errors (..., 6, c) per command: own loss, the rest, and what the correction gains leave."""
-    kinematics, lost = evidence.kinematics, evidence.lost_motion
-    strokes = kinematics.mapping.values[..., columns]
-    own = np.eye(strokes.shape[-2]) * lost.loss.values
-    loss = kinematics.jacobian.values @ (own @ strokes)
-    total = kinematics.motion[..., columns] - lost.gain.values @ strokes
-    left = kinematics.motion[..., columns] - lost.gain.values @ lost.correction.values[..., columns]
-    return carry @ loss, carry @ (total - loss), carry @ left
-
-
-def _largest(slopes: Array, half: Array) -> Array:
-    return (np.abs(slopes) @ np.abs(half)[..., None])[..., 0]
-
-
-def _random(resolution: PoseResolution, carry: Array) -> Array:
-    """Standard deviation (..., 6) of the pose at the point from the gauges' noise."""
-    return np.sqrt((((carry @ resolution.inverse.values) ** 2) @ (resolution.gauge_noise**2)[..., None])[..., 0])
-
-
-def _resolution_errors(resolution: PoseResolution, carry: Array) -> Array:
-    return (np.abs(carry @ resolution.inverse.values) @ (0.5 * resolution.gauge_steps)[..., None])[..., 0]
-
-
-def _table(columns: tuple[Array, ...]) -> Matrix:
-    values = stack(list(columns))
-    sources = (*SOURCES, STEPS)[: len(columns)]
-    return Matrix(values, COMPONENTS, sources, tuple((unit,) * len(sources) for unit in TWIST_UNITS))

@@ -207,13 +207,7 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
     >>> clusters(np.array([1.0, 1.0 + 1e-9, 2.0]), 1e-6)
     [[0, 1], [2]]
     """
-    groups: list[list[int]] = []
-    for index, value in enumerate(values):
-        if groups and value - values[groups[-1][-1]] <= gap * value:
-            groups[-1].append(index)
-        else:
-            groups.append([index])
-    return groups
+    return _split(values, gap * values)
 
 
 def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
@@ -224,14 +218,13 @@ def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
     >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]
     """
-    groups: list[list[int]] = []
-    for index, value in enumerate(values):
-        slack = (2.0 * gap + _ROUNDING * value / values[0]) * value
-        if groups and value - values[groups[-1][-1]] <= slack:
-            groups[-1].append(index)
-        else:
-            groups.append([index])
-    return groups
+    return _split(values, (2.0 * gap + _ROUNDING * values / values[:1]) * values)
+
+
+def _split(values: Array, slack: Array) -> list[list[int]]:
+    """Groups of ascending values, each no further above the one before than its slack."""
+    starts = 1 + np.flatnonzero(~(np.diff(values) <= slack[1:]))
+    return [each.tolist() for each in np.split(np.arange(len(values)), starts)] if len(values) else []
 
 
 def average(values: Array, groups: list[list[int]]) -> Array:

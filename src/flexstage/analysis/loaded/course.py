@@ -52,9 +52,9 @@ class Course:
         """Where the stage rests. Raises `DesignError` where it does not."""
         return _resting(equilibrium.equilibrium(model, self.loads, weight=self.weight))
 
-    def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.LoadPath:
-        """Equilibria along it, or at other values of its drive."""
-        wanted, hold = self._wanted(model, rest, values)
+    def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State) -> paths.LoadPath:
+        """Equilibria along it."""
+        wanted, hold = self._wanted(model, rest, None)
         found = paths.load_path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
         _require_continuation(found.state)
         return found
@@ -84,11 +84,6 @@ class Course:
         for each in states:
             _require_continuation(each)
         return [strokes.Points(self.drive, each, state, self.locked, rest) for each, state, rest in zip(wanted, states, rests, strict=True)]
-
-    def stroke(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Stroke:
-        """What the stage does along it, counted from where it rests."""
-        rest = self.rest(model)
-        return strokes.stroke(self.path(model, rest, values), rest)
 
 
 def _resting(found: equilibrium.State) -> equilibrium.State:

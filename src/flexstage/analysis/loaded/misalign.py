@@ -114,30 +114,25 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
     )
 
 
-def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:]) -> tuple[Matrix, Matrix]:
-    """Critical misalignments of every copy (or link) that joins the ground, by axis, and those up to which the stage is stable.
-
-    The first are NaN where no stiffness vanishes on the way.
-    """
-    rows = seated(mechanism)
-    values = [[_forced(mechanism, copy, axis).limits(1.0) for axis in axes] for copy in rows]
-    units = (tuple(map(MOTION.unit, axes)),) * len(rows)
-    critical, followed = np.moveaxis(np.array(values).reshape(len(rows), len(axes), 2), -1, 0)
-    return Matrix(critical, rows, axes, units), Matrix(followed, rows, axes, units)
-
-
 def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], *, size: float = 1e-3) -> Misalignments:
     """What every copy (or link) that joins the ground bears, misaligned alone along or about `axes` of its own frame.
 
     Axes are rotations or translations, not both, as all have one `size` [rad, m]. Raises `DesignError` as `misalign` does.
     """
-    critical, followed = critical_misalignments(mechanism, axes)
-    there = [[_at_size(_forced(mechanism, copy, axis), size) for axis in axes] for copy in critical.rows]
-    values = np.array(there).reshape(len(critical.rows), len(axes), 2)
-    units = tuple(map(WRENCH.unit, axes))
-    load = Matrix(values[..., 0], critical.rows, axes, (units,) * len(critical.rows))
-    stress = Matrix(values[..., 1], critical.rows, axes, (("Pa",) * len(axes),) * len(critical.rows))
-    return Misalignments(critical, followed, size, load, stress, _worst(mechanism, (critical, followed), stress, size))
+    rows = seated(mechanism)
+    forced = [_forced(mechanism, copy, axis) for copy in rows for axis in axes]
+    values = np.array([(*each.limits(1.0), *_at_size(each, size)) for each in forced]).reshape(len(rows), len(axes), 4)
+    motion, load = (tuple(map(of.unit, axes)) for of in (MOTION, WRENCH))
+    units = (motion, motion, load, ("Pa",) * len(axes))
+    tables = [Matrix(each, rows, axes, (unit,) * len(rows)) for each, unit in zip(np.moveaxis(values, -1, 0), units, strict=True)]
+    critical, followed, _, stress = (table.values for table in tables)
+    worst = None
+    if followed.size:
+        ranked = bool(np.isfinite(critical).any() or np.ptp(followed) > 0.0)
+        ranks = followed if ranked else -np.nan_to_num(stress)
+        row, column = np.unravel_index(int(np.argmin(ranks)), ranks.shape)
+        worst = misalign(mechanism, rows[row], axes[column], float(followed[row, column]) if ranked else size)
+    return Misalignments(tables[0], tables[1], size, tables[2], tables[3], worst)
 
 
 def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
@@ -145,17 +140,6 @@ def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
     state = forced.at(np.array([size]))
     stress = np.max(strains(state).stress, axis=-1, initial=0.0)
     return float((state.reactions @ forced.direction)[0]), float(stress[0]) if bool(state.converged[0]) else np.nan
-
-
-def _worst(mechanism: Mechanism, limits: tuple[Matrix, Matrix], stress: Matrix, size: float) -> Misaligned | None:
-    critical, followed = limits
-    if not followed.values.size:
-        return None
-    ranked = bool(np.isfinite(critical.values).any() or np.ptp(followed.values) > 0.0)
-    ranks = followed.values if ranked else -np.nan_to_num(stress.values)
-    row, column = np.unravel_index(int(np.argmin(ranks)), ranks.shape)
-    to = float(followed.values[row, column]) if ranked else size
-    return misalign(mechanism, followed.rows[row], followed.columns[column], to)
 
 
 def seated(mechanism: Mechanism) -> tuple[str, ...]:

@@ -20,7 +20,6 @@ from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
 from flexstage.base.arguments import check_arguments
-from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
 from flexstage.base.number import Number, Table
 from flexstage.base.processes.threads import one_thread
@@ -93,11 +92,9 @@ def workspace(
     """
     attempt, limits, mapping = Attempts(() if whole else _FURTHER), stroke_limits(mechanism), kinematics.mapping
     single = single_strokes(mechanism, kinematics)
-    asked = (
-        command if command is not None else {name: float(value) for name, value in zip(single.coordinates, single.symmetric, strict=True)}
-    )
+    asked = _symmetric(single) if command is None else command
     hinged = model if model is not None and set(expand(mechanism).links) <= set(model.stiffness) else None
-    unloaded, stopped = limits.from_zero, partial(_with_stops, mechanism, kinematics, limits)
+    unloaded, stopped = limits.from_zero, partial(with_stops, mechanism, kinematics, limits=limits)
     return Workspace(
         command=Table(asked),
         limits=limits,
@@ -119,10 +116,6 @@ def workspace(
         loads=attempt.of_ground("loads", hinged, _HINGELESS, lambda known: load_share(mechanism, known)),
         reasons=Table(attempt.missing),
     )
-
-
-def _with_stops(mechanism: Mechanism, kinematics: Kinematics, limits: StrokeLimits, mapping: Matrix) -> tuple[Matrix, StrokeLimits]:
-    return with_stops(mechanism, kinematics, mapping, limits)
 
 
 def all_strokes(mechanism: Mechanism) -> Mapping[str, float]:
