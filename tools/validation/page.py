@@ -129,8 +129,8 @@ _INTRODUCTION = """\
 This page compares results of flexstage with published and independent results. Nothing is fitted, and `make validation` or `make check-all`
 computes every value again.
 
-Only references are typed, each with its source. The tolerance is that of the source; without one, our value must round to the printed digits.
-For hinges the error of beam theory is known, and our value must have *this error*."""
+Only references are typed, each with its source. The tolerance is that of the source; without one, our value must round to the printed
+digits. For hinges the error of beam theory is known, and our value must have *this error*."""
 
 _SCORES = """\
 Published results of stages that were built or computed. Sources, tolerances and the commands that repeat a row are on the page
