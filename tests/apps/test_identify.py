@@ -110,7 +110,7 @@ def test_compare_gives_a_document_and_a_report(recorded: Command, tmp_path: Path
     assert page.index("<h2>Theory and experiment</h2>") < page.index("<h2>Modes found</h2>")
     assert len(pictures(page)) == 1 + 6 + 5
     assert len(page.encode()) < 2_000_000
-    assert max(len(each) for each in pictures(page)) < 400_000  # 36 responses of some thousand points
+    assert max(len(each) for each in pictures(page)) < 450_000  # 36 responses of some thousand points, as Matplotlib writes them
 
 
 def _document_of_a_comparison(ended: Ended) -> None:

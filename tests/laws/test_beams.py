@@ -248,7 +248,7 @@ def test_stress_grows_in_proportion_to_the_load(part, material, seed, factor):
 
 
 def test_a_missing_material_is_a_lesson():
-    with pytest.raises(DesignError, match="pass the material steel"):
+    with pytest.raises(DesignError, match="Pass the material steel"):
         compliance(Rod("steel", length=1.0, diameter=0.1), None)
 
 

@@ -64,7 +64,7 @@ def test_an_imperfect_bifurcation_is_no_critical_load():
     Without its weight the stage branches at 11.063 times the load.
     """
     model, load = nonlinear(parallelogram()), {"platform.fx": -1e3}
-    with pytest.raises(LowerBoundError, match="strained by 5% there") as error:
+    with pytest.raises(LowerBoundError, match="strain of 5% there") as error:
         critical_load(model, load)
     assert error.value.bound == pytest.approx(11.063, rel=5e-3)
     after = continuation(model, load, step=0.02, points=2)

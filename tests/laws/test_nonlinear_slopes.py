@@ -133,5 +133,5 @@ def test_designs_of_another_structure_are_refused_by_name():
 
 
 def test_slopes_are_by_numbers_that_are_stated():
-    with pytest.raises(fs.DesignError, match="single numbers"):
+    with pytest.raises(fs.DesignError, match="not a single number"):
         gradients(guide(), ["parts.leaf"], State.twist)

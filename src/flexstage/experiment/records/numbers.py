@@ -136,7 +136,7 @@ def gather(record: Record) -> RecordNumbers:
 def _segment_spectra(inputs: Array, size: int) -> tuple[Array, int]:
     """The sum of cross-spectra of segments with a Hann window, and their number; segments with gaps are left out."""
     count = len(inputs) // size
-    pieces = inputs[: count * size].reshape(count, size, -1)
+    pieces = inputs[: count * size].reshape(count, size, inputs.shape[1])
     pieces = pieces[np.isfinite(pieces).all(axis=(1, 2))]
     window = np.hanning(size + 1)[:-1]
     lines = np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window[:, None], axis=1)
