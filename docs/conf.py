@@ -31,7 +31,7 @@ autodoc_typehints = "description"
 
 html_theme = "furo"
 html_title = "flexstage"
-html_search_scorer = "search_scorer.js"  # ranks pages for developers last
+html_search_scorer = str(Path(__file__).with_name("search_scorer.js"))  # ranks pages for developers last
 exclude_patterns = ["_build", "archive"]
 suppress_warnings: list[str] = []
 nitpicky = False
