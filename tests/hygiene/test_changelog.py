@@ -26,6 +26,11 @@ def test_releases_have_a_version_and_a_date() -> None:
     assert not any(release.endswith("unreleased") for release in releases[1:])
 
 
+def test_a_release_has_eighty_lines_at_most() -> None:
+    releases = re.split(r"^## ", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]
+    expect_none((each.splitlines()[0] for each in releases if len(each.splitlines()) > 80), "shorten it: one line for each change")
+
+
 def test_releases_descend() -> None:
     versions = [tuple(map(int, found[1].split("."))) for release in headings(2) if (found := RELEASE.fullmatch(release)) and found[1]]
     assert versions == sorted(set(versions), reverse=True)
