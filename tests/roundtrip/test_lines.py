@@ -25,8 +25,8 @@ def test_every_number_of_a_stage_has_a_line_that_names_it():
     ("address", "start"),
     [
         ("horizontal/front", "front = {"),
-        ("vertical/pivot.thickness", "[units.vertical.links.pivot]"),
-        ("B4/pivot", "[units.vertical.links.pivot]"),
+        ("vertical/pivot.thickness", "pivot = {"),
+        ("B4/pivot", "pivot = {"),
         ('requirements."stroke.x"', '"stroke.x"'),
         ('tags."materials.steel.yield_stress"', "yield_stress"),
     ],

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Record, Role
 
@@ -29,16 +31,16 @@ class Numbers:
     broken: int = 0
     first_broken: int = -1
     mean: float = 0.0
-    square: float = 0.0
-    lows: Array = field(default_factory=lambda: np.zeros(0))
-    highs: Array = field(default_factory=lambda: np.zeros(0))
-    pairs: tuple[float, float] = (np.inf, -np.inf)
+    square: Annotated[float, INNER] = 0.0
+    lows: Annotated[Array, INNER] = field(default_factory=lambda: np.zeros(0))
+    highs: Annotated[Array, INNER] = field(default_factory=lambda: np.zeros(0))
+    pairs: Annotated[tuple[float, float], INNER] = (np.inf, -np.inf)
     step: float = np.inf
     still: int = 0
     still_from: int = 0
     still_at: float = np.nan
-    _last: float = np.nan
-    _run: int = 0
+    _last: Annotated[float, INNER] = np.nan
+    _run: Annotated[int, INNER] = 0
 
     def add(self, values: Array) -> None:
         """Add a block of samples."""
@@ -73,22 +75,22 @@ class Numbers:
         self._run, self._last = int(lengths[-1]), float(values[-1])
 
     @property
-    def rms(self) -> float:
+    def rms(self) -> Annotated[float, VIEW]:
         """Root mean square about the mean."""
         return float(np.sqrt(self.square / max(1, self.count - self.broken)))
 
     @property
-    def low(self) -> float:
+    def low(self) -> Annotated[float, VIEW]:
         """The least value."""
         return float(self.lows.min(initial=np.inf))
 
     @property
-    def high(self) -> float:
+    def high(self) -> Annotated[float, VIEW]:
         """The highest value."""
         return float(self.highs.max(initial=-np.inf))
 
     @property
-    def levels(self) -> float:
+    def levels(self) -> Annotated[float, VIEW]:
         """The range over the smallest step."""
         return (self.high - self.low) / self.step if np.isfinite(self.step) else 0.0
 
