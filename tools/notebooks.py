@@ -32,17 +32,20 @@ def _cells(page: str) -> Iterator[dict[str, Any]]:
     for prose in _FENCED.split(text):
         if prose.strip():
             yield {"cell_type": "markdown", "metadata": {}, "source": _lines(prose.strip())}
-        if (code := _code(next(found, None))) is not None:
-            yield {"cell_type": "code", "execution_count": None, "metadata": {}, "outputs": [], "source": _lines(code)}
+        if (block := next(found, None)) is not None and "output" not in block.words:
+            yield _cell(block)
 
 
-def _code(block: Block | None) -> str | None:
-    """A block as a cell: files are written, commands run by bash, Python as it is."""
-    if block is None or "output" in block.words:
-        return None
+def _cell(block: Block) -> dict[str, Any]:
+    """A block as a cell: files are written, commands run by bash, Python is run, and text is shown."""
+    code = block.text.rstrip()
     if (name := block.word("file")) is not None:
-        return f"%%writefile {name}\n{block.text.rstrip()}"
-    return f"%%bash\nset -e\n{block.text.rstrip()}" if block.language == "sh" else block.text.rstrip()
+        code = f"%%writefile {name}\n{code}"
+    elif block.language == "sh":
+        code = f"%%bash\nset -e\n{code}"
+    elif block.language != "python":
+        return {"cell_type": "markdown", "metadata": {}, "source": _lines(f"```{block.language}\n{code}\n```")}
+    return {"cell_type": "code", "execution_count": None, "metadata": {}, "outputs": [], "source": _lines(code)}
 
 
 def _lines(text: str) -> list[str]:

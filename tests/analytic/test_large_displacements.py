@@ -386,7 +386,7 @@ def misalignment() -> tuple[Nonlinear, Callable[[Number], dict[str, Number]]]:
 
 def test_a_guide_bears_so_much_misalignment():
     guide, turned = misalignment()
-    found = unstable_motions(equilibrium(guide, hold=turned(np.array([1.0 - 1e-4, 1.0 + 1e-4]))))
+    found = unstable_motions(equilibrium(guide, hold=turned(np.array([1.0 - 1e-4, 1.0 + 1e-4])), options=SolverOptions(past=True)))
     assert (found > 0).tolist() == [False, True]
 
 
@@ -485,7 +485,7 @@ def test_a_pressed_guide_buckles_aside():
 
 
 def test_what_turns_does_not_branch():
-    with pytest.raises(DesignError, match="nothing branches"):
+    with pytest.raises(DesignError, match="limit point without a branch"):
         post_buckling_path(vee(), {"platform.fy": -1.0})
 
 

@@ -21,17 +21,23 @@ def test_every_block_of_a_page_works_in_order(page, tmp_path, monkeypatch):
         reader.run(block)
 
 
-def _readme_block():
-    (block,) = (block for block in blocks("README.md") if block.language == "python")
+LENGTHS = {"README.md": 15, "docs/how-to/describe-in-python.md": 40}
+"""Pages with one Python example that ends with the four analyses, and its most lines."""
+
+
+def _example(page):
+    (block,) = (block for block in blocks(page) if block.language == "python")
     return block.text
 
 
-def test_the_stage_and_its_analyses_fit_in_forty_lines():
-    assert len([line for line in _readme_block().splitlines() if line.strip()]) <= 40
+@pytest.mark.parametrize("page", LENGTHS)
+def test_the_stage_and_its_analyses_fit_in_few_lines(page):
+    assert len([line for line in _example(page).splitlines() if line.strip()]) <= LENGTHS[page]
 
 
-def test_the_readme_ends_with_the_four_analyses():
-    last = ast.parse(_readme_block()).body[-len(ANALYSES) :]
+@pytest.mark.parametrize("page", LENGTHS)
+def test_the_example_ends_with_the_four_analyses(page):
+    last = ast.parse(_example(page)).body[-len(ANALYSES) :]
     assert [_called(statement) for statement in last] == ["print"] * len(ANALYSES)
     for statement, analysis in zip(last, ANALYSES, strict=True):
         names = {node.attr for node in ast.walk(statement) if isinstance(node, ast.Attribute)}

@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 27_300,
+    "base": 27_100,
     "spatial": 3_900,
-    "parts": 37_700,
+    "parts": 37_600,
     "beams": 25_500,
-    "mechanism": 55_000,
+    "mechanism": 54_200,
     "cases": 1_200,
     "models": 90_800,
-    "analysis": 66_900,
-    "show": 64_100,
-    "solid": 76_700,
-    "experiment": 98_300,
-    "control": 153_500,
-    "studies": 50_400,
-    "apps": 34_600,
+    "analysis": 66_800,
+    "show": 62_500,
+    "solid": 76_300,
+    "experiment": 98_000,
+    "control": 152_000,
+    "studies": 49_800,
+    "apps": 34_400,
     ".": 400,
-    "all": 785_700,
+    "all": 779_900,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -90,7 +90,7 @@ def test_a_stage_bears_as_much_negative_stiffness_as_it_has(stage, share):
         softer = 1.0 / statics(lumped(magnet)).compliance.values[1, 1]
         np.testing.assert_allclose(softer, (1.0 - share) * held, rtol=1e-6)
         return
-    with pytest.raises(DesignError, match=rf"magnet: the drawn position is not stable: .* in x, beyond .*\({1.0 / share:.4g} times that\)"):
+    with pytest.raises(DesignError, match=rf"magnet: the nominal position is unstable: .* in x, beyond .*\({1.0 / share:.4g} times that\)"):
         lumped(magnet)
 
 
@@ -163,7 +163,10 @@ def test_the_mass_of_a_spring_is_that_of_a_straight_line(length, weight):
         (Spring(stiffness=1.0, diagonal=(1.0,) * 6), "parts.spring: it states stiffness and diagonal"),
         (Spring(stiffness=1.0, preload=2.0), "parts.spring.length: it states a preload and no length"),
         (Spring(stiffness=1.0, preload=2.0, length=0.1, free_length=0.1), "parts.spring.free_length: it states a preload too"),
-        (Spring(matrix=tuple(map(tuple, np.triu(np.ones((6, 6))).tolist()))), "parts.spring.matrix: it is not symmetric: 1 and 0 SI"),
+        (
+            Spring(matrix=tuple(map(tuple, np.triu(np.ones((6, 6))).tolist()))),
+            "parts.spring.matrix at index 0, 1: it is not symmetric: 1 and 0 SI",
+        ),
     ],
 )
 def test_bad_springs_are_told(spring, what):

@@ -14,6 +14,7 @@ from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import all_strokes, workspace
 from flexstage.base.storage.digest import digest
 from flexstage.base.units.scale import X, mm, um
+from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
 from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.assembly.expand import expand
@@ -28,7 +29,7 @@ from flexstage.models.lumped import lumped
 from flexstage.parts.encoder import Encoder
 from flexstage.parts.force_actuator import ForceActuator
 
-SIX = case("double-triangle")
+SIX = double_triangle()
 ONE = case("parallelogram")
 FACE = Pose((30 * mm, 0.0, 0.0))
 ARM, GAP = 30 * mm, 2 * um

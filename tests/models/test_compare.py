@@ -198,7 +198,7 @@ def test_modes_that_share_less_than_half_of_their_shape_are_no_pair(assurance: f
     beside = np.linalg.qr(np.hstack([np.real(exact.shapes[:, kept]), np.real(exact.shapes[:, 4:5])]))[0][:, 4]
     shapes[:, 2] = np.sqrt(assurance) * shapes[:, 2] + np.sqrt(1.0 - assurance) * beside
     fewer = {name: getattr(exact, name)[kept] for name in ("frequencies", "damping", "participation", "frequency_deviations")}
-    fewer |= {name: getattr(exact, name)[kept] for name in ("damping_deviations", "significance")}
+    fewer |= {name: getattr(exact, name)[kept] for name in ("damping_deviations", "widening", "significance")}
     few = replace(exact, **fewer, shapes=shapes.astype(complex), shape_deviations=exact.shape_deviations[:, kept])
     found = compare(STAGE, few)
     assert (found.modes[2].experiment is not None) == is_pair
@@ -210,7 +210,7 @@ def test_what_sensors_cannot_tell_apart_goes_to_the_nearer_mode() -> None:
     """One upright gauge sees z and both tilts alike: a measured mode at the frequency of z is that one."""
     exact = made(STAGE, noise=Noise(frequency=0.0, model=0.0))
     row = [channel.name for channel in exact.outputs].index("S4")
-    names = ("frequencies", "damping", "participation", "frequency_deviations", "damping_deviations", "significance")
+    names = ("frequencies", "damping", "participation", "frequency_deviations", "damping_deviations", "widening", "significance")
     one = {name: getattr(exact, name)[2:3] for name in names}
     few = replace(
         exact,

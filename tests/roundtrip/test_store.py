@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given
 
 from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.addresses.address import assign, get, provenance, set_text, tag_of
 from flexstage.mechanism.assembly.expand import expand
@@ -57,7 +58,7 @@ def test_shipped_cases_survive_their_files_and_pass_the_checks(name: str, tmp_pa
 
 def test_a_formula_under_overrides_is_not_the_units() -> None:
     """The unit's own place stays; what the formula is worked out of moves the override."""
-    text = dumps(CASES["double-triangle"].build())
+    text = dumps(double_triangle())
     text = text.replace("\n[materials", '\n[numbers]\narm = "10 mm"\n\n[materials', 1)
     text += '\n[overrides]\n"horizontal/front.at.x" = "2 * arm"\n'
     stage = loads(text)

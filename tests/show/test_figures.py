@@ -20,7 +20,6 @@ from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_png, to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
-from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import INK, canvas, style_context
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.tables.lost_motion import budget_table
@@ -45,8 +44,6 @@ def test_every_case_can_be_drawn(name: str) -> None:
     if analysis.lost_motion is not None:
         sound(loss_figure(analysis.lost_motion), "b")
         sound(energy_figure(analysis.lost_motion), "c")
-    if analysis.modes is not None:
-        sound(spectrum_figure(analysis.modes), "d")
     if analysis.response is not None:
         sound(response_figure(analysis.response, analysis.modes), "e")
     if analysis.error_budget is not None:
@@ -169,9 +166,9 @@ def test_a_dollar_sign_is_a_dollar_sign() -> None:
 
 
 def test_png_is_reproducible() -> None:
-    modes = analysed("parallelogram").modes
-    assert modes is not None
-    assert to_png(spectrum_figure(modes)) == to_png(spectrum_figure(modes))
+    statics = analysed("parallelogram").statics
+    assert statics is not None
+    assert to_png(directional_figure(statics)) == to_png(directional_figure(statics))
 
 
 def test_a_reading_has_the_numbers_and_the_places_of_what_is_drawn() -> None:

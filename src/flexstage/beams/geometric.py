@@ -44,8 +44,8 @@ def geometric(part: Part, material: Material | None) -> Geometric:
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.06, thickness=0.0003, width=0.02)
-    >>> found = geometric(leaf, Material(young=200e9, poisson=0.0, density=8000.0))
-    >>> round(float(found.per_force[0, 1, 1] * 0.06), 3)  # 6 N / (5 L) of the consistent matrix
+    >>> result = geometric(leaf, Material(young=200e9, poisson=0.0, density=8000.0))
+    >>> round(float(result.per_force[0, 1, 1] * 0.06), 3)  # 6 N / (5 L) of the consistent matrix
     1.2
     """
     own = inner(part)

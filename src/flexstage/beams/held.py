@@ -199,9 +199,9 @@ def join(arrays: Iterable[Array]) -> Array:
     >>> join([np.ones((2, 1)), np.zeros(2)]).tolist()
     [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
     """
-    found = tuple(arrays)
-    batch = np.broadcast_shapes(*(each.shape[:-1] for each in found))
-    return np.concatenate([np.broadcast_to(each, (*batch, each.shape[-1])) for each in found], axis=-1)
+    parts = tuple(arrays)
+    batch = np.broadcast_shapes(*(each.shape[:-1] for each in parts))
+    return np.concatenate([np.broadcast_to(each, (*batch, each.shape[-1])) for each in parts], axis=-1)
 
 
 def _signed(axis: int, squares: Array, moved: Array, turned: Array | None, first: Array) -> Held:

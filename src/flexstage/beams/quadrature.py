@@ -179,11 +179,11 @@ def _piece(step: Number, cubic: Sequence[Number], thinnest: Number) -> Stations:
     thin, begin, rise = least + 2.0 * np.where(up, low, low + rise), np.where(up, first, -slope), np.where(up, rise, -rise)
     scale = thin / (begin + np.sqrt(begin * begin + 2.0 * thin * rise + thin * thin))
     span, points = np.arcsinh(1.0 / scale), _points(_FEW_POINTS)
-    there = span * np.where(up, points, 1.0 - points)
-    from_thin = scale * np.sinh(there)
+    stretched = span * np.where(up, points, 1.0 - points)
+    from_thin = scale * np.sinh(stretched)
     share = np.where(up, from_thin, 1.0 - from_thin)
     growth = low + share * (first + share * (second + share * third))
-    return Stations(step * share, step * scale * span * np.cosh(there), growth, _rule(1, _FEW_POINTS))
+    return Stations(step * share, step * scale * span * np.cosh(stretched), growth, _rule(1, _FEW_POINTS))
 
 
 def in_series(pieces: Sequence[Stations], starts: Sequence[Number]) -> Stations:

@@ -53,8 +53,8 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.05, thickness=0.001, width=0.01)
-    >>> found = stress(leaf, steel, np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]))  # 1 N guided: M = F L/2 at both ends
-    >>> round(float(found.nominal) / 1e6, 2), round(6 * 0.025 / (0.01 * 0.001**2) / 1e6, 2)
+    >>> result = stress(leaf, steel, np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]))  # 1 N guided: M = F L/2 at both ends
+    >>> round(float(result.nominal) / 1e6, 2), round(6 * 0.025 / (0.01 * 0.001**2) / 1e6, 2)
     (15.0, 15.0)
     """
     own = inner(part)

@@ -106,9 +106,9 @@ def _is_resolved(points: Stations, rigidity: Array, spring: Array) -> Array:
 
 def _in_closed_form(points: Stations, rigidity: Array, spring: Array, load: Array) -> tuple[Array, Array]:
     """theta and E C_w theta' of a constant section; theta is f / g far from the ends."""
-    wavenumber, rest = np.sqrt(spring / rigidity), load / spring
+    wavenumber, plateau = np.sqrt(spring / rigidity), load / spring
     straight, sloping = decays(points, wavenumber)
-    return rest * (1.0 - straight), -rigidity * rest * wavenumber * sloping
+    return plateau * (1.0 - straight), -rigidity * plateau * wavenumber * sloping
 
 
 def _at_stations(points: Stations, rigidity: Array, spring: Array, load: Array) -> tuple[Array, Array]:
@@ -141,8 +141,8 @@ def _warping(points: Stations, *numbers: Array) -> Array:
     shared = numbers[0].ndim > 2 and all(np.array_equal(np.real(each), np.broadcast_to(np.real(each[:1]), shape)) for each in numbers)
     flat = [each.reshape(shape[0] if shared else 1, -1, shape[-1]) for each in numbers]
     blocks = [slice(start, start + _TOGETHER) for start in range(0, flat[0].shape[1], _TOGETHER)]
-    found = [_theta(points, *(np.moveaxis(each[:, block], 0, -1) for each in flat)) for block in blocks]
-    return np.moveaxis(np.concatenate(found), -1, 0).reshape(shape)
+    solved_blocks = [_theta(points, *(np.moveaxis(each[:, block], 0, -1) for each in flat)) for block in blocks]
+    return np.moveaxis(np.concatenate(solved_blocks), -1, 0).reshape(shape)
 
 
 def _theta(points: Stations, *numbers: Array) -> Array:

@@ -76,13 +76,13 @@ def _plane_strain_finding(where: str, error: Array | None, poisson: Number) -> F
 def _errors(part: Shaped, family: str, poisson: Number) -> dict[str, Array]:
     """Errors by component, NaN outside the compared range; components without any comparison are omitted."""
     slot = slot_of(part, poisson)
-    found = {"rx": np.zeros_like(slot.thickness)} if family == "bar" and part.throat.warping is None else {}
+    errors = {"rx": np.zeros_like(slot.thickness)} if family == "bar" and part.throat.warping is None else {}
     with np.errstate(all="ignore"):  # values outside the range may be anything and are masked
         for axis, (law, numbers) in LAWS[family].items():
             index = AXES.index(axis)
             value = slot.beam[..., index] / law(slot, numbers) - 1.0
-            found[axis] = np.where(within(family, axis, slot), value, np.nan)
-    return {axis: found[axis] for axis in AXES if axis in found and not np.all(np.isnan(found[axis]))}
+            errors[axis] = np.where(within(family, axis, slot), value, np.nan)
+    return {axis: errors[axis] for axis in AXES if axis in errors and not np.all(np.isnan(errors[axis]))}
 
 
 def family_of(part: Part) -> str | None:

@@ -18,6 +18,7 @@ _LEFT = 0.25
 _SCALED, _ALL_SCALED = 1.5, 3.0
 """How many times larger than others one channel must be to be named, and than theory's all: its masses are less sure."""
 _LEAST = 0.02
+_BOTH_INVERTED = "look inverted against the others", "with their signs changed"
 _ROUNDS = 5
 _FEWEST = 3
 _MOST_OUTPUTS, _MOST_TOGETHER = 24, 8
@@ -47,24 +48,19 @@ class Residues:
 class Doubt:
     """What looks wrong with outputs, in words; put right, output i is `factors[i]` times what is called `order[i]`."""
 
-    text: str
+    what: str
+    how: str
     order: Array
     factors: Array
+    text: str = ""
 
     def put_right(self, values: Array) -> Array:
         """Values (p, ...) of the outputs as they would be without it."""
         return self.factors[:, None] * values[self.order]
 
-
-@dataclass(frozen=True, eq=False)
-class _Remedy:
-    what: str
-    how: str
-    order: Array
-    factors: Array
-
-    def then(self, other: _Remedy) -> _Remedy:
-        return _Remedy(f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order])
+    def then(self, other: Doubt) -> Doubt:
+        """Both."""
+        return Doubt(f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order])
 
 
 def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> Doubt | None:
@@ -96,48 +92,50 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: C
     if chosen is None or best < _ALIKE or (gained < 1.0 - _ALIKE and left > _LEFT * (1.0 - before)) or gained < _LEAST:
         return None
     text = f"{chosen.what}: {chosen.how}, measured shapes are like theory to {best:.2f}, as they are to {before:.2f}"
-    return Doubt(text, chosen.order, chosen.factors)
+    return replace(chosen, text=text)
 
 
-def _best(tried: list[_Remedy], shapes: Array, score: Score, *, sole: bool = False) -> tuple[_Remedy | None, float]:
+def _best(tried: list[Doubt], shapes: Array, score: Score, *, sole: bool = False) -> tuple[Doubt | None, float]:
     """The first of the best; `sole`: none where others as good do something else."""
-    right = [_apply(each, shapes) for each in tried]
-    scores = np.array([score(each) for each in right])
+    scores = np.array([score(unit_length(each.put_right(shapes))) for each in tried])
     best = np.flatnonzero(scores > np.max(scores) - 1e-6)
     if sole and any(not _same(tried[best[0]], tried[each]) for each in best):
         return None, 0.0
     return tried[best[0]], float(scores[best[0]])
 
 
-def _same(one: _Remedy, other: _Remedy) -> bool:
+def _same(one: Doubt, other: Doubt) -> bool:
     """Whether two do the same, up to the sign of all."""
     sign = np.sign(one.factors[0] * other.factors[0])
     return bool(np.all(one.order == other.order) and np.allclose(one.factors, sign * other.factors))
 
 
-def _apply(remedy: _Remedy, shapes: Array) -> Array:
-    found = remedy.factors[:, None] * shapes[remedy.order]
-    return found if np.all(np.abs(remedy.factors) == 1.0) else found / np.maximum(np.linalg.norm(found, axis=0), 1e-300)
+def unit_length(shapes: Array) -> Array:
+    """Shapes (p, k) of unit length.
+
+    >>> unit_length(np.array([[3.0], [4.0]])).ravel().tolist()
+    [0.6, 0.8]
+    """
+    return shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300)
 
 
-def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[_Remedy]:
-    """One output inverted, two exchanged, two inverted, all scaled."""
-    count = len(outputs)
-    as_is, one = np.arange(count), np.ones(count)
-    for index, name in enumerate(outputs):
-        yield _Remedy(f"{name} looks inverted", "with its sign changed", as_is, np.where(as_is == index, -1.0, 1.0))
-    for first, second in combinations(range(count), 2):
+def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Doubt]:
+    """One or two outputs inverted, two exchanged, all scaled."""
+    as_is, one = np.arange(len(outputs)), np.ones(len(outputs))
+    pairs = list(combinations(range(len(outputs)), 2))
+    for chosen in (*combinations(range(len(outputs)), 1), *pairs):
+        names = " and ".join(outputs[index] for index in chosen)
+        words = ("looks inverted", "with its sign changed") if len(chosen) == 1 else _BOTH_INVERTED
+        yield Doubt(f"{names} {words[0]}", words[1], as_is, np.where(np.isin(as_is, chosen), -1.0, 1.0))
+    for first, second in pairs:
         order = as_is.copy()
         order[[first, second]] = second, first
-        yield _Remedy(f"{outputs[first]} and {outputs[second]} look exchanged", "the other way round", order, one)
-    for first, second in combinations(range(count), 2):
-        what = f"{outputs[first]} and {outputs[second]} look inverted against the others"
-        yield _Remedy(what, "with their signs changed", as_is, np.where((as_is == first) | (as_is == second), -1.0, 1.0))
+        yield Doubt(f"{outputs[first]} and {outputs[second]} look exchanged", "the other way round", order, one)
     wrong = [] if scales is None else [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
     if wrong and scales is not None:
         listed = ", ".join(f"{outputs[index]} ({scales[index]:.3g} times)" for index in wrong)
         look = "looks" if len(wrong) == 1 else "look"
-        yield _Remedy(f"{listed} {look} scaled against the others", "divided by that", as_is, 1.0 / scales)
+        yield Doubt(f"{listed} {look} scaled against the others", "divided by that", as_is, 1.0 / scales)
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
@@ -167,23 +165,22 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
     """
     if not residues.inputs:
         return ()
-    theory, measured = (_columns(each) for each in (residues.theory, residues.measured))
+    both = residues.theory, residues.measured
+    theory, measured = map(_columns, both)
+    rows, measured_rows = (_columns(np.swapaxes(each, 1, 2)) for each in both)
     if not theory.size or len(theory) < _FEWEST:
         return ()
-    likeness = _correlations(theory, measured)
-    by_output = [_columns(np.swapaxes(each, 1, 2)) for each in (residues.theory, residues.measured)]
-    outputs = _correlations(*by_output)
-    told_by_outputs = [*_exchange_doubts(residues.outputs, outputs, _correlations(by_output[0], by_output[0]))]
-    if told_by_outputs and _explained(outputs) > _explained(likeness):
+    likeness, outputs = _correlations(theory, measured), _correlations(rows, measured_rows)
+    found = [*_exchange_doubts(residues.outputs, outputs, _correlations(rows, rows))]
+    if found and _explained(outputs) > _explained(likeness):
         order, signs = _assigned(outputs)
         right = replace(residues, measured=signs[:, None] * residues.measured[:, order])
-        return (*told_by_outputs, *gain_doubts(right))
+        return (*found, *gain_doubts(right))
     found = [*_exchange_doubts(residues.inputs, likeness, _correlations(theory, theory))]
     if not found:
-        found += _common_scale_doubts(theory, measured, residues.strokes)
-        found += _scale_doubts(residues.inputs, theory, measured, residues.inputs_known)
-        rows = _columns(np.swapaxes(residues.theory, 1, 2)), _columns(np.swapaxes(residues.measured, 1, 2))
-        found += _scale_doubts(residues.outputs, *rows, np.ones(len(residues.outputs), dtype=bool))
+        found += _common_scale_doubts(*_ratios(theory, measured, residues.strokes))
+        found += _scale_doubts(residues.inputs, *_ratios(theory, measured, residues.inputs_known))
+        found += _scale_doubts(residues.outputs, *_ratios(rows, measured_rows, np.ones(len(residues.outputs), dtype=bool)))
     return tuple(found)
 
 
@@ -228,28 +225,27 @@ def _exchange_doubts(names: tuple[str, ...], likeness: Array, among: Array) -> I
         yield f"{listed} {look} inverted: with the sign changed, the part in the modes is like theory's"
 
 
-def _common_scale_doubts(theory: Array, measured: Array, known: Array) -> Iterator[str]:
-    """All gains together: not as large as theory's masses lead to."""
+def _ratios(theory: Array, measured: Array, known: Array) -> tuple[Array, Array]:
+    """How much larger each channel's part in the modes is measured than theory has it, and whether that is sure; both (m,)."""
     sizes = np.linalg.norm(theory, axis=0)
     sure = known & (sizes > 1e-3 * np.max(sizes)) & (np.diag(_correlations(theory, measured)) > _ALIKE)
-    if not np.any(sure):
-        return
-    usual = _nearest_median(np.linalg.norm(measured, axis=0)[sure] / sizes[sure])
-    if not 1.0 / _ALL_SCALED < usual < _ALL_SCALED:
+    return np.linalg.norm(measured, axis=0) / np.maximum(sizes, 1e-300), sure
+
+
+def _common_scale_doubts(ratio: Array, sure: Array) -> Iterator[str]:
+    """All gains together: not as large as theory's masses lead to."""
+    if np.any(sure) and not 1.0 / _ALL_SCALED < (usual := _nearest_median(ratio[sure])) < _ALL_SCALED:
         yield f"all gains are {usual:.3g} times theory's: the unit or the scale of all inputs or of all outputs looks wrong"
 
 
-def _scale_doubts(names: tuple[str, ...], theory: Array, measured: Array, known: Array) -> Iterator[str]:
+def _scale_doubts(names: tuple[str, ...], ratio: Array, sure: Array) -> Iterator[str]:
     """Channels whose part in the modes is not as large as that of the others leads one to expect."""
-    sizes = np.linalg.norm(theory, axis=0)
-    sure = known & (sizes > 1e-3 * np.max(sizes)) & (np.diag(_correlations(theory, measured)) > _ALIKE)
     if np.sum(sure) < _FEWEST:
         return
-    ratio = np.linalg.norm(measured, axis=0) / np.maximum(sizes, 1e-300)
-    usual = _nearest_median(ratio[sure])
+    beside = ratio / _nearest_median(ratio[sure])
     for index in np.flatnonzero(sure):
-        if not 1.0 / _SCALED < ratio[index] / usual < _SCALED:
-            yield f"{names[index]} looks scaled: its part in the modes is {ratio[index] / usual:.3g} times what that of the others leads to"
+        if not 1.0 / _SCALED < beside[index] < _SCALED:
+            yield f"{names[index]} looks scaled: its part in the modes is {beside[index]:.3g} times what that of the others leads to"
 
 
 def _nearest_median(ratios: Array) -> float:

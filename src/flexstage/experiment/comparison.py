@@ -19,7 +19,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
 from flexstage.base.record import INNER, VIEW, Graded, Heading, Layout
 from flexstage.base.units.quantity import ANGLE, FREQUENCY, RATIO
-from flexstage.experiment.channels import Doubt, Residues, gain_doubts, normalise, output_scales, shape_doubt
+from flexstage.experiment.channels import Doubt, Residues, gain_doubts, normalise, output_scales, shape_doubt, unit_length
 from flexstage.experiment.identification.identified import (
     INFLATION,
     DampingInterval,
@@ -217,7 +217,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
     doubt = shape_doubt(sensors, seen, score, lambda: _scales(frequencies, experiment, groups, own, seen))
-    right = pairs if doubt is None else _pair(frequencies, experiment, bases, _unit(doubt.put_right(seen)))[0]
+    right = pairs if doubt is None else _pair(frequencies, experiment, bases, unit_length(doubt.put_right(seen)))[0]
     matched = _match_groups(groups, candidates, right)
     misnamed = gain_doubts(_residues(mechanism, linear, theory, experiment, sensors, matched=matched, doubt=doubt))
     misnamed = misnamed if doubt is None else (doubt.text, *misnamed)
@@ -278,12 +278,7 @@ def _normalise(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Arr
     """Shapes of unit length; angles weighted so that the platform's radius of gyration makes lengths of them."""
     units = {channel.name: channel.unit for channel in model.outputs}
     weight = np.array([gyration(model) if units[name] == "rad" else 1.0 for name in sensors])
-    scaled = weight[:, None] * shapes
-    return _unit(scaled)
-
-
-def _unit(shapes: Array) -> Array:
-    return shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300)
+    return unit_length(weight[:, None] * shapes)
 
 
 def _pair(frequencies: Array, experiment: Identified, bases: list[tuple[list[int], Array]], seen: Array) -> tuple[dict[int, int], Array]:
@@ -312,10 +307,7 @@ def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]],
     theory = _sizes(own, whole)
     scales = np.ones(len(own))
     for _ in range(_ROUNDS):  # repeated modes count by their sizes, which scaled channels distort
-        divided = seen / scales[:, None]
-        measured = _sizes(
-            divided / np.maximum(np.linalg.norm(divided, axis=0), 1e-300), [[found[index] for index in group] for group in whole]
-        )
+        measured = _sizes(unit_length(seen / scales[:, None]), [[found[index] for index in group] for group in whole])
         scales = scales * output_scales(theory, measured)
     return scales
 
@@ -399,15 +391,8 @@ def _rows(theory: Modes, experiment: Identified, pairs: dict[int, int], likeness
 
 
 def _measured_mode(experiment: Identified, index: int) -> Measured:
-    (low, high), (least, most) = experiment.frequency_intervals[index].tolist(), experiment.damping_intervals[index].tolist()
-    return Measured(
-        index,
-        float(experiment.frequencies[index]),
-        (low, high),
-        float(experiment.damping[index]),
-        (least, most),
-        float(experiment.widening[index]),
-    )
+    mode = experiment.modes[index]
+    return Measured(index, mode.frequency, mode.frequency_interval, mode.damping, mode.damping_interval, mode.widening)
 
 
 def _further_modes(
@@ -469,14 +454,13 @@ def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
         if row.fea is None and row.fea_assurance is not None
     ]
     for group in repeated:
-        names = " and ".join(str(number) for number in group.numbers)
+        names = " and ".join(map(str, group.numbers))
         if 0 < group.seen < len(group.numbers):
             found.append(
                 f"modes {names} are repeated; the experiment shows {group.seen} of {len(group.numbers)}: drive other actuators too."
             )
-    for group in repeated:
         if group.angle is not None and group.angle > _TURNED:
-            names, angle = " and ".join(map(str, group.numbers)), f"{np.rad2deg(group.angle):.0f}"
+            angle = f"{np.rad2deg(group.angle):.0f}"
             found.append(f"modes {names} are repeated; what was measured of them lies up to {angle} degrees off their subspace.")
     lost = [row for row in rows if row.experiment is None]
     if lost:

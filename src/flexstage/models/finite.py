@@ -1,8 +1,10 @@
 """Finite motion of the ideal model: inverse (pose to strokes) and forward (strokes to pose) kinematics on SE(3).
 
-Unknowns are the poses of all bodies. Every link's locked components of the relative pose vanish, an actuator's equal its free deformation
-times its stroke; force actuators hold nothing. Closed loops and any topology; idle freedoms follow steps of least norm, redundant
-constraints are met by least squares.
+Unknowns are the poses of all bodies. The locked components of the relative pose of every link are zero; those of an actuator equal its free
+deformation times its stroke. Force actuators constrain nothing.
+
+Closed loops and any topology are supported. Free internal modes follow steps of least norm; redundant constraints are satisfied by least
+squares.
 """
 
 from __future__ import annotations
@@ -38,7 +40,7 @@ _RANK = 1e-9
 class FinitePose(CheckedFields):
     """A pose after finite motion: `displacement` (..., 3) [m] of the reference point and `rotation_vector` (..., 3) [rad], stage axes.
 
-    Both are measured from the drawn position, so a small pose is a twist.
+    Both are relative to the nominal position, so that a small pose is a twist.
     """
 
     displacement: Array
@@ -54,9 +56,12 @@ class FinitePose(CheckedFields):
 class FiniteMotion:
     """A solved finite motion.
 
-    `strokes` (..., n) [m] by `actuators`; `pose` of the platform at its reference point; `bodies` the poses of all bodies at theirs, of
-    idle bodies those of least turn (which does not say what a gauge on them reads: `Kinematics.sensing` does, or refuses);
-    `residual` (...) the largest constraint error left [m, rotations times `length`]; `iterations` the steps taken.
+    - `strokes` (..., n) [m] by `actuators`;
+    - `pose` of the platform at its reference point;
+    - `bodies`: poses of all bodies at their reference points; idle bodies have the smallest rotation. The reading of a gauge on an idle
+      body does not follow from it: see `Kinematics.sensing`.
+    - `residual` (...): largest constraint error [m, rotations times `length`];
+    - `iterations`: number of steps.
     """
 
     actuators: tuple[str, ...]
@@ -70,13 +75,13 @@ class FiniteMotion:
 
     @property
     def consistent(self) -> Array:
-        """Whether redundant constraints agree at this finite motion; where not, the links are strained by about `residual`."""
+        """Whether redundant constraints agree at this finite motion; if not, the links are strained by about `residual`."""
         return self.residual <= _CONSISTENT * self.length
 
 
 @dataclass(frozen=True, eq=False)
 class _Links:
-    """All links as arrays: body indices (the ground last), arms from the bodies' references to the joint, frames, locked components."""
+    """All links as arrays: body indices (the ground last), arms from the body references to the joint, frames, locked components."""
 
     bodies: tuple[str, ...]
     first: list[int]
@@ -99,14 +104,14 @@ class _Links:
 
     @property
     def row_weights(self) -> Array:
-        """Weights (..., m) that make the errors lengths."""
+        """Weights (..., m) that scale the errors to lengths."""
         own = _weights(self.length)
         return np.concatenate([np.tile(own, len(self.first))[..., self.locked], own[..., list(self.posed)]], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
 class _State:
-    """Displacements (..., N + 1, 3) and rotations (..., N + 1, 3, 3) of the bodies, the ground last; strokes; wanted pose components."""
+    """Displacements (..., N + 1, 3) and rotations (..., N + 1, 3, 3) of the bodies, the ground last; strokes; target pose components."""
 
     shift: Array
     turn: Array
@@ -116,7 +121,7 @@ class _State:
 
 @dataclass(frozen=True, eq=False)
 class _Relative:
-    """Relative pose at every link: offset in stage axes, axes of the first body's joint, translation and rotation in those axes."""
+    """Relative pose of every link: offset in stage axes, joint axes of the first body, translation and rotation in those axes."""
 
     offset: Array
     axes: Array
@@ -127,11 +132,12 @@ class _Relative:
 
 @check_arguments
 def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
-    """Pose of the platform for strokes (..., n) [m] in the order of `kinematics.actuators`, from the drawn position.
+    """Compute the platform pose for strokes (..., n) [m] in the order of `kinematics.actuators`, from the nominal position.
 
     Newton's method on the poses of all bodies. Leaves and rods shorten with their deflection w and slope t as in the beam constraint model,
-    0.6 w^2/L - 0.1 w t + L t^2/15 (Awtar, Slocum & Sevincer 2007); the pivots of other links stay. Raises `DesignError` where strokes do
-    not determine the platform or no convergence is reached.
+    0.6 w^2/L - 0.1 w t + L t^2/15 (Awtar, Slocum & Sevincer 2007); the pivots of other links are fixed.
+
+    Raises `DesignError` if the strokes do not determine the platform or the iteration does not converge.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -146,7 +152,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
 
 @check_arguments
 def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
-    """Strokes that bring the platform's reference point to `pose`, of which the components named in `kinematics.coordinates` count.
+    """Compute the strokes that move the platform's reference point to `pose`, in the components named in `kinematics.coordinates`.
 
     Method, links and errors as for `forward_kinematics`.
 
@@ -157,13 +163,13 @@ def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: Finit
     >>> (1e6 * inverse_kinematics(stage, ideal(stage), lifted).strokes[3:]).round(1).tolist()
     [50.0, 50.0, 50.0]
     """
-    wanted = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]
-    strokes = np.zeros((*wanted.shape[:-1], len(kinematics.actuators)))
-    return _solve(mechanism, kinematics, strokes, wanted)
+    target = pose.vector[..., [COMPONENTS.index(name) for name in kinematics.coordinates]]
+    strokes = np.zeros((*target.shape[:-1], len(kinematics.actuators)))
+    return _solve(mechanism, kinematics, strokes, target)
 
 
 def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...]:
-    """Batch shape of the designs as finite motion sees them: leading axes of strokes and poses broadcast against it.
+    """Return the batch shape of the designs: leading axes of strokes and poses broadcast against it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -173,10 +179,10 @@ def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...
     return _links(mechanism, kinematics, posed=False).shape
 
 
-def _solve(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted: Array | None) -> FiniteMotion:
-    _ = kinematics.mapping  # refuses under-actuated stages
-    links = _links(mechanism, kinematics, posed=wanted is not None)
-    state, iterations = _newton(links, _state_at(links, strokes, wanted))
+def _solve(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, target: Array | None) -> FiniteMotion:
+    _ = kinematics.mapping  # raises for under-actuated stages
+    links = _links(mechanism, kinematics, posed=target is not None)
+    state, iterations = _newton(links, _state_at(links, strokes, target))
     names = (*links.bodies, GROUND)
     poses = {name: FinitePose(state.shift[..., index, :], logarithm(state.turn[..., index, :, :])) for index, name in enumerate(names)}
     return FiniteMotion(
@@ -192,7 +198,7 @@ def _solve(mechanism: Mechanism, kinematics: Kinematics, strokes: Array, wanted:
 
 
 def _newton(links: _Links, state: _State) -> tuple[_State, int]:
-    """Newton steps; the pseudo-inverse of the drawn position serves as long as it converges fast."""
+    """Newton steps; the pseudo-inverse at the nominal position is used while convergence is fast."""
     relative = _relative(links, state)
     slope = _first_slope(links, state)
     before = np.inf
@@ -211,7 +217,7 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
     raise refuse(
         "finite motion",
         f"no convergence: the last step was {before:.3g} times the stage's size, {np.max(links.length):.3g} m",
-        "The stage cannot be closed there; ask for smaller strokes or poses",
+        "The stage cannot be closed there; use smaller strokes or poses",
     )
 
 
@@ -219,18 +225,18 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
     assembly = expand(mechanism).welded
     bodies = layout(assembly).bodies
     index = {name: number for number, name in enumerate((*bodies, GROUND))}
-    placed = tuple(assembly.links.values())
-    parts = [inner(link.part) for link in placed]
+    placed_links = tuple(assembly.links.values())
+    parts = [inner(link.part) for link in placed_links]
     beams = [number for number, part in enumerate(parts) if isinstance(part, Shaped) and part.slender]
     slender = [part for part in parts if isinstance(part, Shaped) and part.slender]
     return _Links(
         bodies=bodies,
-        first=[index[link.joins[0]] for link in placed],
-        second=[index[link.joins[1]] for link in placed],
-        first_arm=_together([_arm(assembly, link, link.joins[0]) for link in placed], 1),
-        second_arm=_together([_arm(assembly, link, link.joins[1]) for link in placed], 1),
-        axes=_together([link.frame.rotation for link in placed], 2),
-        locked=_locked_rows(placed, kinematics),
+        first=[index[link.joins[0]] for link in placed_links],
+        second=[index[link.joins[1]] for link in placed_links],
+        first_arm=_together([_arm(assembly, link, link.joins[0]) for link in placed_links], 1),
+        second_arm=_together([_arm(assembly, link, link.joins[1]) for link in placed_links], 1),
+        axes=_together([link.frame.rotation for link in placed_links], 2),
+        locked=_locked_rows(placed_links, kinematics),
         drives=free_deformations(assembly),
         beams=beams,
         spans=_together([np.asarray(part.span) for part in slender], 0),
@@ -240,9 +246,12 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
     )
 
 
-def _locked_rows(placed: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]:
+def _locked_rows(placed_links: tuple[PlacedLink, ...], kinematics: Kinematics) -> list[int]:
     return [
-        6 * number + freedom.index for number, link in enumerate(placed) for freedom in ALL if freedom not in kinematics.free[link.name]
+        6 * number + freedom.index
+        for number, link in enumerate(placed_links)
+        for freedom in ALL
+        if freedom not in kinematics.free[link.name]
     ]
 
 
@@ -251,22 +260,22 @@ def _arm(assembly: Assembly, link: PlacedLink, body: str) -> Array:
 
 
 def _together(arrays: list[Array], depth: int) -> Array:
-    """Arrays of single links along a link axis that stands before their last `depth` axes."""
+    """Stack arrays of single links along a link axis before their last `depth` axes."""
     if not arrays:
         return np.zeros(0)
     batch = np.broadcast_shapes(*(array.shape[: array.ndim - depth] for array in arrays))
     return np.stack([np.broadcast_to(array, batch + array.shape[array.ndim - depth :]) for array in arrays], axis=-1 - depth)
 
 
-def _state_at(links: _Links, strokes: Array, wanted: Array | None) -> _State:
+def _state_at(links: _Links, strokes: Array, target: Array | None) -> _State:
     lead = np.broadcast_shapes(strokes.shape[:-1], links.shape)
-    kind = np.result_type(strokes, float if wanted is None else wanted, links.first_arm, links.axes)
+    kind = np.result_type(strokes, float if target is None else target, links.first_arm, links.axes)
     count = len(links.bodies) + 1
     return _State(
         shift=np.zeros((*lead, count, 3), dtype=kind),
         turn=np.broadcast_to(np.eye(3, dtype=kind), (*lead, count, 3, 3)),
         strokes=np.broadcast_to(strokes.astype(kind), (*lead, strokes.shape[-1])),
-        wanted=np.zeros((*lead, 0)) if wanted is None else np.broadcast_to(wanted, (*lead, wanted.shape[-1])),
+        wanted=np.zeros((*lead, 0)) if target is None else np.broadcast_to(target, (*lead, target.shape[-1])),
     )
 
 
@@ -281,7 +290,7 @@ def _relative(links: _Links, state: _State) -> _Relative:
 
 
 def _residual(links: _Links, state: _State, relative: _Relative) -> Array:
-    """Weighted constraint errors (..., m): locked components less strokes and shortenings, then pose components less the wanted ones."""
+    """Weighted constraint errors (..., m): locked components less strokes and shortening, then pose components less their targets."""
     values = np.concatenate([relative.translation, relative.vector], axis=-1)
     flat = values.reshape(*values.shape[:-2], -1)
     flat = flat - (links.drives @ state.strokes[..., None])[..., 0]
@@ -295,7 +304,7 @@ def _residual(links: _Links, state: _State, relative: _Relative) -> Array:
 
 
 def _shortening(links: _Links, relative: _Relative) -> Array:
-    """How much nearer the ends of leaves and rods come as they deflect, seen at their centres."""
+    """Shortening of leaves and rods due to their deflection, at their centres."""
     half = 0.5 * links.spans
     turn, vector = relative.rotation[..., links.beams, :, :], relative.vector[..., links.beams, :]
     end = relative.translation[..., links.beams, :] + half[..., None] * turn[..., :, 0]
@@ -308,13 +317,13 @@ def _bend(deflection: Array, slope: Array, span: Array) -> Array:
 
 
 def _first_slope(links: _Links, state: _State) -> Array:
-    """The pseudo-inverse at the drawn position, one for all points."""
+    """The pseudo-inverse at the nominal position, one for all points."""
     drawn = _state_at(links, np.zeros(state.strokes.shape[-1]), np.zeros(state.wanted.shape[-1]))
     return _pseudo_inverse(links, drawn, _relative(links, drawn))
 
 
 def _times(matrix: Array, vectors: Array) -> Array:
-    """Matrix times vectors (..., m): one product for all where the matrix is one."""
+    """Matrix times vectors (..., m), as one product for a single matrix."""
     return vectors @ matrix.T if matrix.ndim == 2 else (matrix @ vectors[..., None])[..., 0]
 
 
@@ -326,7 +335,7 @@ def _pseudo_inverse(links: _Links, state: _State, relative: _Relative) -> Array:
 
 
 def _slopes(links: _Links, state: _State, relative: _Relative) -> Array:
-    """Derivative (..., m, 6 N [+ n]) of the errors with respect to the bodies' twists at their references and, for a pose, the strokes."""
+    """Jacobian (..., m, 6 N [+ n]) of the errors by the body twists at their references and, for a pose, the strokes."""
     count, bodies = len(links.first), len(links.bodies)
     lead = relative.offset.shape[:-2]
     blocks = np.zeros((*lead, count, 6, bodies + 1, 6), dtype=relative.offset.dtype)
@@ -344,7 +353,7 @@ def _slopes(links: _Links, state: _State, relative: _Relative) -> Array:
 
 
 def _end_slopes(links: _Links, state: _State, relative: _Relative) -> tuple[Array, Array]:
-    """Derivatives (..., L, 6, 6) of the relative poses with respect to the twist of the first and of the second body."""
+    """Derivatives (..., L, 6, 6) of the relative poses by the twist of the first and of the second body."""
     back = np.swapaxes(relative.axes, -1, -2)
     arms = [
         cross_matrix((state.turn[..., ends, :, :] @ arm[..., None])[..., 0])
@@ -373,12 +382,12 @@ def _move(links: _Links, state: _State, step: Array) -> _State:
 
 
 def _weights(length: Array) -> Array:
-    """Of translations 1, of rotations the length (..., 6)."""
+    """Weights (..., 6): 1 for translations, the length for rotations."""
     return np.where(np.arange(6) < 3, 1.0, length[..., None])
 
 
 def _step_weights(links: _Links, state: _State) -> Array:
-    """Weights (..., k) that make the unknowns lengths."""
+    """Weights (..., k) that scale the unknowns to lengths."""
     twists = np.tile(_weights(links.length), len(links.bodies))
     strokes = np.ones((*twists.shape[:-1], state.strokes.shape[-1] if links.posed else 0))
     return np.concatenate([twists, strokes], axis=-1)

@@ -1,9 +1,12 @@
-"""Ideal model: rigid bodies, hinges free about their intended freedoms and locked in all others; superelements are rigid.
+"""Ideal model: rigid bodies; hinges are free in their intended freedoms and locked in all others; superelements are rigid.
 
-Unknowns are the twists of all bodies and the strokes; every link's locked deformations vanish, an actuator's equal its free deformation
-times its stroke. From the motions that are left follow R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform's
-mobility, idle freedoms and redundant constraints. Force actuators constrain nothing; what they exert on the ideal motions follows by
-virtual work.
+Unknowns are the twists of all bodies and the strokes. The locked deformations of every link are zero; those of an actuator equal its free
+deformation times its stroke.
+
+The remaining motions give R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform mobility, free internal modes and
+redundant constraints.
+
+Force actuators constrain nothing; their generalised forces on the ideal motions follow by virtual work.
 """
 
 from __future__ import annotations
@@ -38,7 +41,7 @@ from flexstage.spatial.frame import COMPONENTS
 _NEGLIGIBLE = 1e-7
 _ENERGYLESS = 1e-12
 _MATRICES = 10.0
-"""Dense matrices alive at once: 9 to 12 on chains of 200 and 300 rods, measured."""
+"""Dense matrices in memory at once: 9 to 12 on chains of 200 and 300 rods, measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +62,7 @@ class _Graph:
 
 
 def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
-    """The freedoms taken as free at a link: its own statement, else the part's intended ones.
+    """Return the free freedoms of a link: as specified at the link, else the intended freedoms of the part.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [freedom.value for freedom in free_freedoms(expand(double_triangle()).links["B4/pivot"])]
@@ -70,10 +73,10 @@ def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
 
 @check_arguments
 def ideal(mechanism: Mechanism) -> Kinematics:
-    """Read a stage as ideal kinematics.
+    """Compute the ideal kinematics of a stage.
 
-    Small motions about the drawn position. Raises `DesignError` where a stroke moves nothing but itself (an actuator without a path to the
-    platform). Under-actuated stages are read, but their `mapping` is refused.
+    Small motions about the nominal position. Raises `DesignError` if a stroke moves nothing but itself (an actuator without a path to the
+    platform). Under-actuated stages are accepted, but their `mapping` raises.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()
@@ -84,7 +87,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
 
 @SESSION.keep(2)
 def _kept(key: Same) -> Kinematics:
-    """Of one design, kept for what else is asked of the same description."""
+    """Result of one design, cached for further calls with the same description."""
     return _read(key.mechanism)
 
 
@@ -93,19 +96,19 @@ def _read(mechanism: Mechanism) -> Kinematics:
 
 
 def _ideal(mechanism: Mechanism) -> Kinematics:
-    """With dense matrices, of all designs of a batch."""
+    """Kinematics by dense matrices, of all designs of a batch."""
     graph = _graph(mechanism)
     solution = eliminate_each(graph.constraints, graph.scale, keep=tuple(range(6)))
     freedoms = [index for index in solution.independent if index < 6]
     columns = [solution.independent.index(index) for index in freedoms]
-    rest = [index for index in range(len(solution.independent)) if index not in columns]
+    idle_columns = [index for index in range(len(solution.independent)) if index not in columns]
     size = graph.order.size
-    idle = np.real(solution.basis[..., rest])
+    idle = np.real(solution.basis[..., idle_columns])
     _require_paths(graph, idle[..., size:, :])
-    motion = _without_idle(graph, solution, columns, rest)
+    motion = _without_idle(graph, solution, columns, idle_columns)
     bodies, strokes = motion[..., :size, :], motion[..., size:, :]
-    sensed = _sense(graph, solution, columns, rest, bodies)
-    found = Kinematics(
+    sensed = _sense(graph, solution, columns, idle_columns, bodies)
+    result = Kinematics(
         actuators=tuple(graph.assembly.strokes),
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
@@ -126,11 +129,11 @@ def _ideal(mechanism: Mechanism) -> Kinematics:
         thrust_inputs=tuple(graph.assembly.actuator(name).input.si for name in graph.assembly.thrusts),
         thrust=_thrust(graph, sensed),
     )
-    return replace(found, blocked=_blockages(graph, found.immobile)) if found.immobile else found
+    return replace(result, blocked=_blockages(graph, result.immobile)) if result.immobile else result
 
 
 def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
-    """Of one large design, body by body; `None` of others, and where gauges or forces see idle motions."""
+    """Kinematics of one large design, body by body; `None` for others, and if gauges or forces see free internal modes."""
     whole = expand(mechanism)
     assembly = whole.welded
     if len(assembly.bodies) < LARGE or whole.superelements or not is_single(assembly) or not assembly.links:
@@ -143,21 +146,21 @@ def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
     solved = eliminate_blocks(rows, scale, len(order.bodies), len(assembly.strokes))
     free = [index for index in solved.last.independent if index < 6]
     columns = [solved.last.independent.index(index) for index in free]
-    rest = [index for index in range(len(solved.last.independent)) if index not in columns]
+    idle_columns = [index for index in range(len(solved.last.independent)) if index not in columns]
     graph = _Graph(assembly, order, cast("Array", Rows.of(operators, order.size)), np.zeros((0, 0)), names, scale, length, {})
-    _require_paths(graph, solved.last.basis[6:, rest])
+    _require_paths(graph, solved.last.basis[6:, idle_columns])
     size = order.size
     idle = as_csr([Sparse(each.columns, each.values, len(scale)) for each in solved.idle], len(scale)).T.tocsr()[:size]
     strained = cast("Rows", graph.strain).entries @ idle if idle.shape[1] else None
     watching = [*(_reading(graph, name) for name in assembly.gauges), *_elongations(graph).values()]
-    if rest or (strained is not None and any(_sees_few(row, idle) for row in watching)):
+    if idle_columns or (strained is not None and any(_sees_few(row, idle) for row in watching)):
         return None
     strokes = solved.last.basis[6:, columns]
     bodies = _least_deformed(graph, solved.last.basis[:6, columns], strokes)
     if bodies is None:
         return None
     strains = graph.strain @ bodies
-    found = Kinematics(
+    result = Kinematics(
         actuators=tuple(assembly.strokes),
         coordinates=tuple(COMPONENTS[index] for index in free),
         gauges=tuple(assembly.gauges),
@@ -178,11 +181,11 @@ def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
         thrust_inputs=tuple(assembly.actuator(name).input.si for name in assembly.thrusts),
         thrust=_thrust(graph, bodies),
     )
-    return None if found.immobile else found
+    return None if result.immobile else result
 
 
 def _large_constraints(assembly: Assembly, operators: Sequence[Sparse], size: int) -> tuple[list[Sparse], tuple[str, ...]]:
-    """The constraints as `_constraints` has them, each by itself."""
+    """The rows of `_constraints` as one block per constraint."""
     strokes = {link: size + number for number, link in enumerate(assembly.strokes.values())}
     moved = {link: assembly.actuator(name).free_deformation for name, link in assembly.strokes.items()}
     rows: list[Sparse] = []
@@ -200,14 +203,14 @@ def _large_constraints(assembly: Assembly, operators: Sequence[Sparse], size: in
 
 
 def _sees_few(row: Array, idle: Any) -> bool:
-    """As `_sees`, of idle motions without their zeros."""
+    """`_sees` for sparse free internal modes."""
     own = few(row)
-    seen, most = own.values @ idle[own.columns].toarray(), np.abs(own.values) @ np.abs(idle[own.columns].toarray())
-    return bool(np.any(np.abs(seen) > _NEGLIGIBLE * most))
+    signal, most = own.values @ idle[own.columns].toarray(), np.abs(own.values) @ np.abs(idle[own.columns].toarray())
+    return bool(np.any(np.abs(signal) > _NEGLIGIBLE * most))
 
 
 def _least_deformed(graph: _Graph, motion: Array, strokes: Array) -> Array | None:
-    """The bodies' motions (N, f) for those of platform (6, f) and strokes (n, f), idle ones as `_without_idle` sets them."""
+    """Body motions (N, f) for platform motions (6, f) and strokes (n, f), with free internal modes as in `_without_idle`."""
     links = graph.assembly.links.values()
     rigid = np.array([freedom not in free_freedoms(link) for link in links for freedom in ALL])
     weights = np.tile(_weights(graph.length), len(links))
@@ -219,61 +222,63 @@ def _least_deformed(graph: _Graph, motion: Array, strokes: Array) -> Array | Non
 
 
 def _named_idle(graph: _Graph, idle: Any, strained: Any) -> tuple[Idle, ...]:
-    """Bodies and links that every idle motion moves and strains."""
+    """Bodies and links that move or strain in each free internal mode."""
     if strained is None:
         return ()
     links = tuple(graph.assembly.links)
-    found: list[Idle] = []
+    result: list[Idle] = []
     moving, deforming = idle.tocsc(), strained.tocsc()
     for place in range(idle.shape[1]):
         size = np.max(np.abs(moving.data[moving.indptr[place] : moving.indptr[place + 1]]), initial=0.0)
         named = [_owners(matrix, place, _NEGLIGIBLE * size, names) for matrix, names in ((moving, graph.order.bodies), (deforming, links))]
-        found.append(Idle(*named))
-    return tuple(found)
+        result.append(Idle(*named))
+    return tuple(result)
 
 
 def _owners(matrix: Any, column: int, threshold: float, names: tuple[str, ...]) -> tuple[str, ...]:
-    """The bodies or links, six rows each, that a column of a sparse matrix moves by more than a threshold."""
+    """Bodies or links, six rows each, that a column of a sparse matrix moves by more than a threshold."""
     own = slice(matrix.indptr[column], matrix.indptr[column + 1])
     return tuple(names[place] for place in np.unique(matrix.indices[own][np.abs(matrix.data[own]) > threshold] // 6))
 
 
 def _hinges(graph: _Graph) -> dict[str, PlacedSuperelement]:
-    """The superelements whose links state freedoms."""
+    """The superelements whose links specify freedoms."""
     return {name: item for name, item in graph.elements.items() if item.link.free}
 
 
 def _element_strains(graph: _Graph, bodies: Array) -> dict[str, Array]:
-    """The twists (..., 6, f) of their second ports against the bodies of the first ones, where elastic models take their stiffness."""
-    found: dict[str, Array] = {}
+    """Twists (..., 6, f) of their second ports relative to the bodies of the first ones, the deformation of the elastic models."""
+    result: dict[str, Array] = {}
     for name, item in _hinges(graph).items():
         first, second = item.ports.values()
         ends = [twist_at(graph.assembly, graph.order, port.body, second.frame) for port in (first, second)]
-        found[name] = (ends[1] - ends[0]) @ bodies
-    return found
+        result[name] = (ends[1] - ends[0]) @ bodies
+    return result
 
 
 def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
-    """What blocks each immobile stroke, by the links' addresses in the description."""
+    """Blockage of each immobile stroke, by the addresses of the links in the description."""
     rows = _comparable(graph)
     links = {name: link.drawn.removeprefix("links.") for name, link in graph.assembly.links.items()}
     ends = [name.rpartition(".") for name in graph.names]
     names = tuple(f"{links[link]}.{freedom}" for link, _, freedom in ends)
     meant = {f"{links[name]}.{freedom.value}" for name, link in graph.assembly.links.items() for freedom in link.part.intended}
     actuators = list(graph.assembly.strokes)
-    found = {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
-    return {name: replace(each, ends=_rigid_ends(graph.assembly.links[graph.assembly.strokes[name]], each)) for name, each in found.items()}
+    result = {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
+    return {
+        name: replace(each, ends=_rigid_ends(graph.assembly.links[graph.assembly.strokes[name]], each)) for name, each in result.items()
+    }
 
 
-def _rigid_ends(link: PlacedLink, found: Blockage) -> tuple[str, ...]:
-    """Those of ground and platform that an actuator joins, where what it does not give way by works against its stroke."""
+def _rigid_ends(link: PlacedLink, blocked: Blockage) -> tuple[str, ...]:
+    """Ends at ground or platform of an actuator whose locked freedoms work against its stroke."""
     own = f"{link.drawn.removeprefix('links.')}."
-    stiff = any(name.startswith(own) for name in found.against)
+    stiff = any(name.startswith(own) for name in blocked.against)
     return tuple(body for body in link.joins if body in (GROUND, PLATFORM)) if stiff else ()
 
 
 def _comparable(graph: _Graph) -> Array:
-    """The constraints of the first design, all rows of one size."""
+    """The constraints of the first design, rows scaled to equal size."""
     first = np.real(first_design(graph.constraints, 2)) * first_design(graph.scale, 1)
     norms = np.linalg.norm(first, axis=1)
     return first / np.where(norms > 0.0, norms, 1.0)[:, None]
@@ -295,14 +300,14 @@ def _graph(mechanism: Mechanism) -> _Graph:
 
 
 def _scale(assembly: Assembly, length: Number) -> Array:
-    """What makes all coordinates (..., N + n) comparable, by real parts."""
+    """Scale (..., N + n) that makes all coordinates comparable, by real parts."""
     own = _weights(1.0 / np.real(length))
     twists = np.tile(own, len(assembly.bodies))
     return np.concatenate([twists, np.ones((*own.shape[:-1], len(assembly.strokes)))], axis=-1)
 
 
 def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, ...]]:
-    """Constraint rows and their names: locked deformations vanish; an actuator's equal its free deformation times its stroke."""
+    """Constraint rows and their names: locked deformations are zero; an actuator's equal its free deformation times its stroke."""
     locked: dict[str, int] = {}
     for place, (name, link) in enumerate(assembly.links.items()):
         free = free_freedoms(link)
@@ -314,12 +319,12 @@ def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, .
 
 
 def _by_link(strains: Array) -> Array:
-    """Strains (..., 6 L, k) with the links leading, (L, ..., 6, k); twists of bodies alike."""
+    """Reshape strains (..., 6 L, k), or twists of bodies, to (L, ..., 6, k)."""
     return np.moveaxis(strains.reshape(*strains.shape[:-2], strains.shape[-2] // 6, 6, strains.shape[-1]), -3, 0)
 
 
 def _weights(rotation: Number) -> Array:
-    """Of translations 1, of rotations this (..., 6)."""
+    """Weights (..., 6): 1 for translations, `length` for rotations."""
     own = np.asarray(rotation)[..., None]
     return np.concatenate([np.ones((*own.shape[:-1], 3)), own, own, own], axis=-1)
 
@@ -334,12 +339,12 @@ def _length(assembly: Assembly) -> Number:
 
 
 def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
-    """Strokes (..., n, k) that can change while the platform stands still drive nothing, in any design."""
+    """Refuse strokes (..., n, k) that can change with the platform at rest, in any design."""
     moving = np.max(np.abs(idle_strokes), axis=(*range(idle_strokes.ndim - 2), -1), initial=0.0) > _NEGLIGIBLE
     require(
         Finding(
             link,
-            f"actuator {name} can move while the platform stands still: its stroke has no path to the platform",
+            f"actuator {name} can move with the platform at rest: its stroke has no path to the platform",
             "Join its unit to the platform, or lock the freedom that lets it slip",
         )
         for (name, link), slips in zip(graph.assembly.strokes.items(), moving, strict=True)
@@ -347,85 +352,86 @@ def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
     )
 
 
-def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest: list[int]) -> Array:
-    """Motions per platform coordinate, idle motions set so that the links' deformations are least (rotations times the length scale)."""
-    wanted, idle = solution.basis[..., columns], solution.basis[..., rest]
-    if not rest:
-        return wanted
+def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], idle_columns: list[int]) -> Array:
+    """Motions per platform coordinate, free internal modes set for the least deformation of links (rotations times the length scale)."""
+    driven, idle = solution.basis[..., columns], solution.basis[..., idle_columns]
+    if not idle_columns:
+        return driven
     size = graph.order.size
     weighted = np.tile(_weights(graph.length), len(graph.assembly.links))[..., None] * graph.strain
-    before, spun = (weighted @ motion[..., :size, :] for motion in (wanted, idle))
+    before, spun = (weighted @ motion[..., :size, :] for motion in (driven, idle))
     transposed = np.swapaxes(spun, -1, -2)
-    return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
+    return driven - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
 
 
-def _sense(graph: _Graph, solution: Elimination, columns: list[int], rest: list[int], bodies: Array) -> Array:
-    """The bodies' motions (..., N, f) as gauges and force actuators see them.
+def _sense(graph: _Graph, solution: Elimination, columns: list[int], idle_columns: list[int], bodies: Array) -> Array:
+    """The body motions (..., N, f) for gauges and force actuators.
 
-    Idle motions that one of them sees store the least energy in the links they strain: so do forces on idle bodies reach the platform.
+    Free internal modes that one of them sees store the least energy in the links they strain: so do forces on idle bodies reach the
+    platform.
     """
     size = graph.order.size
-    wanted, idle = solution.basis[..., :size, columns], solution.basis[..., :size, rest]
+    driven, idle = solution.basis[..., :size, columns], solution.basis[..., :size, idle_columns]
     still = np.real(idle)
     rows = [*((name, _reading(graph, name)) for name in graph.assembly.gauges), *_elongations(graph).items()]
     watching = [(name, np.real(row)) for name, row in rows if _see_alike(name, np.real(row), still)]
     if not watching:
         return bodies
-    energy, mixed = np.zeros((len(rest), len(rest))), np.zeros((len(rest), len(columns)))
+    energy, mixed = np.zeros((len(idle_columns), len(idle_columns))), np.zeros((len(idle_columns), len(columns)))
     for place, stiffness in _stiffnesses(graph, still, [name for name, _ in watching]):
         strain = graph.strain[..., place, :]
         force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
-        energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ wanted)
+        energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ driven)
     held, loose = _split_alike(np.real(energy))
     unresisted = [name for name, row in watching if np.any(_sees(row, still @ loose))]
     require(_undetermined_findings(graph, unresisted, first_design(still @ loose, 2)))
-    return wanted - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
+    return driven - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
 
 
 def _see_alike(name: str, row: Array, motions: Array) -> bool:
-    """`_sees`, in all designs of a batch the same."""
-    seen = np.ravel(_sees(row, motions))
-    if np.any(seen != seen[0]):
-        raise unlike(int(np.argmax(seen != seen[0])), f"differs from the first in whether {name} sees an idle motion")
-    return bool(seen[0])
+    """`_sees`, required to be equal in all designs of a batch."""
+    flags = np.ravel(_sees(row, motions))
+    if np.any(flags != flags[0]):
+        raise unlike(int(np.argmax(flags != flags[0])), f"differs from the first in whether {name} sees a free internal mode")
+    return bool(flags[0])
 
 
 def _sees(row: Array, motions: Array) -> Array:
-    """Whether (...) a gauge's row (..., 1, N) feels one of the motions (..., N, k) more than by rounding."""
+    """Whether (...) a gauge row (..., 1, N) sees one of the motions (..., N, k) above rounding."""
     return np.any(np.abs(row @ motions) > _NEGLIGIBLE * (np.abs(row) @ np.abs(motions)), axis=(-2, -1))
 
 
 def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tuple[slice, Array]]:
-    """Rows in the strain and stiffness of every link that idle motions deform."""
+    """Rows in the strain, and stiffness, of every link that free internal modes deform."""
     strains = np.abs(_by_link(np.real(graph.strain) @ idle))
     strained = np.max(strains, axis=tuple(range(1, strains.ndim))) > _NEGLIGIBLE
     for number, (name, link) in enumerate(graph.assembly.links.items()):
         if strained[number]:
             element = next((each for each, item in _hinges(graph).items() if name in {weld.name for weld in item.welds()}), None)
             if element is not None:
-                what = f"it sees an idle motion in the freedoms that {element} states, and this model does not know its stiffness"
-                raise refuse(", ".join(watching), what, "Move the gauge to the platform, or leave the freedoms out")
+                what = f"sees a free internal mode in the specified freedoms of {element}, whose stiffness is unknown in this model"
+                raise refuse(", ".join(watching), what, "Move the gauge to the platform, or remove the freedoms")
             try:
                 yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
             except DesignError as error:
                 reason = "; ".join(finding.what for finding in error.findings)
-                what = f"it sees an idle motion, and how stiff {name} is against it is not known: {reason}"
-                raise refuse(", ".join(watching), what, "State it, or move the gauge to the platform") from error
+                what = f"sees a free internal mode, and the stiffness of {name} is unknown: {reason}"
+                raise refuse(", ".join(watching), what, "Specify the stiffness, or move the gauge to the platform") from error
 
 
 def _split_alike(energy: Array) -> tuple[list[int], Array]:
-    """`_split_by_energy` of all designs (..., k, k), in all the same; their combinations (..., k, l)."""
+    """`_split_by_energy` of all designs (..., k, k), required to agree, and their combinations (..., k, l)."""
     splits = [_split_by_energy(each) for each in energy.reshape(-1, *energy.shape[-2:])]
     held = splits[0][0]
     for number, (other, _) in enumerate(splits):
         if other != held:
-            raise unlike(number, "has other idle motions that links resist than the first")
+            raise unlike(number, "has other free internal modes with elastic resistance than the first")
     loose = np.stack([each for _, each in splits])
     return held, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
 
 
 def _split_by_energy(energy: Array) -> tuple[list[int], Array]:
-    """Idle motions that store energy, as many as tell the rest, and combinations (k, l) that store none."""
+    """Free internal modes that store energy, as many as determine the others, and combinations (k, l) that store none."""
     diagonal = np.diag(energy)
     top = np.max(diagonal, initial=0.0)
     root = np.sqrt(np.where(diagonal > _ENERGYLESS * top, diagonal, top or 1.0))
@@ -437,25 +443,25 @@ def _split_by_energy(energy: Array) -> tuple[list[int], Array]:
 
 
 def _undetermined_findings(graph: _Graph, gauges: list[str], motions: Array) -> Iterator[Finding]:
-    """Gauges that see an idle motion which no link resists."""
+    """Warn of gauges that see a free internal mode without elastic resistance."""
     moving = np.max(np.abs(_by_link(motions)), axis=(1, 2), initial=0.0) > _NEGLIGIBLE * np.max(np.abs(motions), initial=0.0)
     bodies = ", ".join(itertools.compress(graph.order.bodies, moving))
     for name in gauges:
         what = "its reading does not follow from" if name in graph.assembly.gauges else "its force does not reach"
         yield Finding(
             name,
-            f"it sees an idle motion that no link resists ({bodies}): {what} the platform's motion",
-            "Move it to the platform, give a link of these bodies stiffness in that freedom, or lock it",
+            f"sees a free internal mode without elastic resistance ({bodies}): {what} the platform's motion",
+            "Move the gauge to the platform, give a link of these bodies stiffness in that freedom, or lock it",
         )
 
 
 def _reading(graph: _Graph, name: str) -> Array:
-    """What a gauge reads (..., 1, N) of the bodies' motions."""
+    """Reading of a gauge (..., 1, N) by the body motions."""
     return reading(graph.assembly.gauges[name], lambda body, frame: twist_at(graph.assembly, graph.order, body, frame))
 
 
 def _elongations(graph: _Graph) -> dict[str, Array]:
-    """The work (..., 1, N) of every force actuator per unit of its input and of the bodies' motions, w^T times its deformation."""
+    """Work (..., 1, N) of every force actuator per unit of its input and of the body motions, w^T times its deformation."""
     assembly, places = graph.assembly, {name: 6 * number for number, name in enumerate(graph.assembly.links)}
     return {
         name: assembly.actuator(name).wrench[..., None, :] @ graph.strain[..., places[link] : places[link] + 6, :]
@@ -471,7 +477,7 @@ def _thrust(graph: _Graph, bodies: Array) -> Array:
 
 
 def _sensing(graph: _Graph, bodies: Array) -> Array:
-    """Gauge readings per platform twist; gauges on other bodies see the ideal motions only."""
+    """Gauge readings per platform twist; gauges on other bodies see only the ideal motions."""
     motion = bodies[..., :6, :]
     rows = [_gauge_row(graph, name, bodies, motion) for name in graph.assembly.gauges]
     if not rows:

@@ -1,7 +1,7 @@
-"""Lumped model: rigid bodies of six freedoms each, joined by 6x6 links.
+"""Lumped model: rigid bodies with six degrees of freedom, joined by 6x6 links.
 
-K = sum H^T k H with H the relative twist at each link; M from bodies and parts; strokes are imposed deformations of their actuators, forces
-equal and opposite wrenches H^T w on the two bodies of theirs.
+K = sum H^T k H with H the relative twist at each link; M from bodies and parts. Strokes are imposed deformations of their actuators. Forces
+are equal and opposite wrenches H^T w on the two bodies of the actuator.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ _STILL = 1e-7
 _BLOCKED = 1e-7
 _APART = 1e-6
 _MATRICES = 20.0
-"""Dense matrices alive at once, modes and their energies by body included: 19 to 24 on chains of 200 and 300 rods, measured."""
+"""Dense matrices in memory at once, including modes and their energies by body: 19 to 24 on chains of 200 and 300 rods, measured."""
 _STRETCHES = 1e-5
 _OVER: Array = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 """Rotations are compared with translations over 0.1 m."""
@@ -67,7 +67,7 @@ _Value = TypeVar("_Value")
 
 
 class Masses(Enum):
-    """Which masses count: all bodies and links, or the platform with its payloads only (the paper's model)."""
+    """Included masses: all bodies and links, or the platform with its payloads only (the paper's model)."""
 
     ALL = "all"
     PLATFORM = "platform"
@@ -75,9 +75,9 @@ class Masses(Enum):
 
 @dataclass(frozen=True, eq=False)
 class _Stage:
-    """The stage as operators: twists of every link's `ends`, `strains`, rows of locked `freedoms`, `rigid` motion with the ground.
+    """Operators of the stage: twists of the `ends` of every link, `strains`, rows of locked `freedoms`, `rigid` motion with the ground.
 
-    The ends of a superelement are its ports, its strains the twists at them against the body of the first one.
+    The ends of a superelement are its ports, its strains the port twists relative to the body of the first one.
     """
 
     assembly: Assembly
@@ -89,9 +89,9 @@ class _Stage:
 
     @property
     def locked(self) -> Mapping[str, Array]:
-        """The rows (..., l, N) of every link's locked freedoms."""
-        found = {name: [freedom.index for freedom in freedoms] for name, freedoms in self.freedoms.items()}
-        return {name: self.strains[name].operator[..., rows, :] for name, rows in found.items()}
+        """The rows (..., l, N) of the locked freedoms of every link."""
+        indices = {name: [freedom.index for freedom in freedoms] for name, freedoms in self.freedoms.items()}
+        return {name: self.strains[name].operator[..., rows, :] for name, rows in indices.items()}
 
     @property
     def motions(self) -> Motions:
@@ -101,13 +101,15 @@ class _Stage:
 
 @check_arguments
 def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
-    """Read a stage as rigid bodies on 6x6 links.
+    """Build the linear model of a stage: rigid bodies on 6x6 links.
 
-    Valid for small displacements about the drawn position and frequencies below the first resonance of the parts themselves. Locked
-    freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion. Motions without
-    stiffness that nothing feels keep their inertia, drop out with their zero modes and are listed in `idle`. Raises `DesignError` for a
-    mechanism (K singular), naming the bodies that can move freely, for a stroke that locked freedoms block, and for a stage that negative
-    stiffnesses push out of its drawn position; a later design of a batch that they do has no numbers (NaN).
+    Valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
+
+    - Locked freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion.
+    - Free internal modes without effect keep their inertia, are removed with their zero modes, and are listed in `idle`.
+
+    Raises `DesignError` for a mechanism (K singular), naming the free bodies, for a stroke that locked freedoms block, and for a nominal
+    position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
@@ -119,9 +121,9 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def variants(
     mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
 ) -> Iterator[LinearModel]:
-    """The models of a stage whose restricted parts, by name, keep and free other (elastic, free) freedoms: it is placed once for all.
+    """Build the models of a stage for other elastic and free freedoms of its restricted parts, by name, on one expansion of the stage.
 
-    Each names the stage itself as its origin. Raises `DesignError` as `lumped` does.
+    The origin of each model is the stage. Raises `DesignError` as `lumped`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.restrict import restrict
@@ -136,7 +138,7 @@ def variants(
 
 
 def _restricted(stage: _Stage, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> _Stage:
-    """The stage with other freedoms of the restricted parts that are named."""
+    """The stage with other freedoms of the named restricted parts."""
     links = dict(stage.assembly.links)
     for name, link in links.items():
         if link.link.part in kept:
@@ -189,7 +191,7 @@ def _model(mechanism: Mechanism, stage: _Stage, masses: Masses) -> LinearModel:
 
 @dataclass(frozen=True, eq=False)
 class _Idle:
-    """Motions (..., N, k) that no stiffness holds, the coordinates named for them, and which of them have inertia `mass` (..., h, h)."""
+    """Free internal modes (..., N, k), their coordinates, and which of them have inertia `mass` (..., h, h)."""
 
     motions: Array
     names: tuple[str, ...]
@@ -197,14 +199,14 @@ class _Idle:
     mass: Array
 
     def momentless(self, momentum: Array) -> Array:
-        """What to add to a motion (..., N, m) of `momentum` M z (..., N, m) to leave none in the idle motions."""
+        """Correction of a motion (..., N, m) of `momentum` M z (..., N, m) that leaves no momentum in the free internal modes."""
         heavy = self.motions[..., list(self.heavy)]
         return -(heavy @ np.linalg.solve(*_broadcast((self.mass, _transpose(heavy) @ momentum))))
 
 
 @dataclass(frozen=True, eq=False)
 class _Kept:
-    """z = `basis` q + `driven` u: the motions that are left (absent: all), and what inputs impose on locked freedoms (absent: nothing)."""
+    """z = `basis` q + `driven` u: the retained motions (absent: all), and motions imposed by inputs on locked freedoms (absent: none)."""
 
     basis: Array | None
     driven: Array | None
@@ -213,7 +215,7 @@ class _Kept:
 
 
 def _stage_without_zeros(mechanism: Mechanism) -> _Stage | None:
-    """A large stage as sparse operators; `None` where it is small, a batch, or has freedoms or motions that are not elastic."""
+    """Sparse operators of a large stage; `None` for small stages, batches, and stages with freedoms or motions that are not elastic."""
     assembly = expand(mechanism)
     if len(assembly.bodies) < LARGE or assembly.superelements or not is_single(assembly):
         return None
@@ -233,7 +235,7 @@ def _stage(mechanism: Mechanism, *, sparse: bool = False) -> _Stage:
     assembly = expand(mechanism)
     if not sparse:
         require_room(assembly, _MATRICES)
-    with np.errstate(all="ignore"):  # what comes of it is told below
+    with np.errstate(all="ignore"):  # overflow is refused below
         laws = _by_part(law, assembly)
     inner = {name: item.inner.shape[-1] for name, item in laws.items() if item.inner is not None}
     inner |= {name: len(_condensed(element).squares) for name, element in assembly.superelements.items()}
@@ -257,24 +259,24 @@ def _condensed(element: PlacedSuperelement) -> Condensed:
 
 
 def _strain_of(assembly: Assembly, order: Layout, element: PlacedSuperelement) -> Contribution:
-    """A superelement's stiffness over the twists of its ports against the body of the first one, and over its modes."""
-    found = _condensed(element)
+    """Stiffness of a superelement over the port twists relative to the body of the first port, and over its modes."""
+    condensed = _condensed(element)
     first, *others = element.ports.values()
     relative = [twist_at(assembly, order, each.body, each.frame) - twist_at(assembly, order, first.body, each.frame) for each in others]
     loss = element.part.loss_factor
-    law = _block_diagonal(found.stiffness, np.diag(found.squares))
+    law = _block_diagonal(condensed.stiffness, np.diag(condensed.squares))
     return Contribution(_with_inner(order, element.name, tuple(relative)), law, 0.0 if loss is None else loss)
 
 
 def _with_inner(order: Layout, link: str, rows: tuple[Array, ...]) -> Array:
-    """Rows (..., r, N) of a link one above the other, and below them those of its inner coordinates."""
+    """Rows (..., r, N) of a link stacked above those of its inner coordinates."""
     if order.sparse:
         return cast("Array", below(cast("tuple[Sparse, ...]", (*rows, order.inner_selector(link))), order.size))
     return np.concatenate(_broadcast((*rows, order.inner_selector(link))), axis=-2)
 
 
 def _whole_law(law: Law) -> Array:
-    """The stiffness (..., 6 + m, 6 + m) of a link's relative twist and its inner coordinates, which do not feel one another."""
+    """Stiffness (..., 6 + m, 6 + m) of the relative twist of a link and its inner coordinates, which are decoupled."""
     return law.stiffness if law.inner is None else _block_diagonal(law.stiffness, law.inner[..., None] * np.eye(law.inner.shape[-1]))
 
 
@@ -287,27 +289,29 @@ def _block_diagonal(first: Array, second: Array) -> Array:
 
 
 def _viscous(assembly: Assembly) -> dict[str, Array]:
-    """What parts damp by themselves, by link."""
-    found = _by_part(lambda part, _: viscous_damping(part), assembly)
+    """Dampers of parts, by link."""
+    dampers = _by_part(lambda part, _: viscous_damping(part), assembly)
     elements = {name: _condensed(element).damping for name, element in assembly.superelements.items()}
-    return {name: damping for name, damping in (*found.items(), *elements.items()) if damping is not None}
+    return {name: damping for name, damping in (*dampers.items(), *elements.items()) if damping is not None}
 
 
 def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:
-    """Links whose stiffness or inertia is no finite number on the first design, once a part, with the numbers of the part."""
-    told: set[str] = set()
+    """Links with non-finite stiffness or inertia in the first design, once per part, with the numbers of the part."""
+    listed: set[str] = set()
     for name, value in values.items():
         link = assembly.links[name]
-        if link.link.part not in told and not np.all(np.isfinite(np.real(first_design(value, 2)))):
-            told.add(link.link.part)
-            found = node_of(type(link.part)).numbers(link.part)
-            stated = ", ".join(f"{place} {float(np.ravel(np.real(number))[0]):.4g} {node.quantity.si}" for place, number, node in found)
-            advice = "Mend the one that is out of all proportion"
-            yield Finding(name, f"its {what} is beyond what can be computed, by the numbers of part {link.link.part}: {stated}", advice)
+        if link.link.part not in listed and not np.all(np.isfinite(np.real(first_design(value, 2)))):
+            listed.add(link.link.part)
+            numbers = node_of(type(link.part)).numbers(link.part)
+            value_list = ", ".join(
+                f"{place} {float(np.ravel(np.real(number))[0]):.4g} {node.quantity.si}" for place, number, node in numbers
+            )
+            advice = "Correct the extreme value"
+            yield Finding(name, f"non-finite {what} for the numbers of part {link.link.part}: {value_list}", advice)
 
 
 def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> None:
-    """A motion that stretches a link is not loose: where rounding of stiffer links hides it, no answer would be right."""
+    """Refuse stiffness ratios so large that rounding makes a motion with elastic deformation appear loose."""
     over = {
         name: np.tile(_OVER, (item.law.shape[-1] - stage.order.inner.get(name, 0)) // 6)[:, None] for name, item in stage.strains.items()
     }
@@ -317,10 +321,10 @@ def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> Non
     full = loose if basis is None else np.real(first_design(basis, 2)) @ loose
     weights = sign_weights(stage.order.coordinates)
     size = np.max(np.abs(full) * weights[:, None], axis=0)
-    seen = {
+    strains = {
         name: np.abs(np.real(first_design(item.operator, 2))[: len(over[name])] @ full) * over[name] for name, item in stage.strains.items()
     }
-    hidden = [name for name in stage.strains if np.any(seen[name][stiffness[name] > 0.0] > _STRETCHES * size)]
+    hidden = [name for name in stage.strains if np.any(strains[name][stiffness[name] > 0.0] > _STRETCHES * size)]
     if hidden:
         ends = {name: value[value > 0.0] for name, value in stiffness.items() if np.any(value > 0.0)}
         soft = min(hidden, key=lambda name: ends[name].min())
@@ -328,13 +332,13 @@ def _require_told_apart(stage: _Stage, loose: Array, basis: Array | None) -> Non
         raise refuse(
             stiff,
             f"stiffnesses from {ends[soft].min():.3g} N/m ({soft}) to {ends[stiff].max():.3g} N/m ({stiff}), rotations over 0.1 m, "
-            "are too far apart for the digits that computers carry",
-            f"Look for a value out of all proportion in {stiff} or {soft}, or lock the stiff freedoms",
+            "differ too much for double precision",
+            f"Check for an extreme value in {stiff} or {soft}, or lock the stiff freedoms",
         )
 
 
 def _by_part(function: Callable[[Part, Material | None], _Value], assembly: Assembly) -> dict[str, _Value]:
-    """A value for every link, computed once for all links of one part and material."""
+    """A value for every link, computed once per part and material."""
     keys = {name: (id(link.part), id(link.material)) for name, link in assembly.links.items()}
     distinct = {keys[name]: link for name, link in assembly.links.items()}
     values = {key: function(link.part, link.material) for key, link in distinct.items()}
@@ -342,7 +346,7 @@ def _by_part(function: Callable[[Part, Material | None], _Value], assembly: Asse
 
 
 def _by_value(function: Callable[[Law], _Value], laws: Mapping[str, Law]) -> dict[str, _Value]:
-    """A value for every link, computed once for all that share a law."""
+    """A value for every link, computed once per law."""
     distinct = {id(item): item for item in laws.values()}
     values = {key: function(item) for key, item in distinct.items()}
     return {name: values[id(item)] for name, item in laws.items()}
@@ -356,7 +360,7 @@ def _loss_factor(link: PlacedLink) -> Number:
 
 
 def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
-    """What satisfies the locked freedoms and leaves idle motions without momentum."""
+    """Motions that satisfy the locked freedoms and have no momentum in free internal modes."""
     names = stage.order.coordinates
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in names])
     basis: Array | None = None
@@ -368,8 +372,8 @@ def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
         basis, independent = solution.basis, solution.independent
         driven = _stroke_motion(stage, solution, rows)
     if not independent:
-        what = f"every freedom is locked, by {', '.join(stage.freedoms)}: strokes move the platform, and nothing is elastic"
-        raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model tells how strokes move it as it is")
+        what = f"every freedom is locked, by {', '.join(stage.freedoms)}, so that nothing is elastic"
+        raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model computes the motion by strokes")
     loose = np.zeros((len(names), 0)) if stage.order.sparse else _loose(stage, basis)
     named = _loose_coordinates(stage, loose, independent)
     _require_same_loose(stage, basis, independent, named)
@@ -385,7 +389,7 @@ def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
 
 
 def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
-    """The motion (..., N, inputs) that strokes impose on locked freedoms; absent where no actuator is locked along its stroke."""
+    """Motion (..., N, inputs) that strokes impose on locked freedoms; absent if no actuator is locked along its stroke."""
     locked = [(name, freedom) for name, freedoms in stage.freedoms.items() for freedom in freedoms]
     none = np.zeros((6, len(input_channels(stage.assembly))))
     strokes = _strokes(stage)
@@ -399,7 +403,7 @@ def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array |
 
 
 def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
-    """Strokes (columns) that locked freedoms (rows) cannot follow."""
+    """Errors of strokes (columns) that locked freedoms (rows) cannot follow."""
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
         held = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
         if held:
@@ -412,7 +416,7 @@ def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: 
 def _idle(
     stage: _Stage, inertia: Mapping[str, Contribution], basis: Array, names: tuple[str, ...], *, left: list[int], named: list[int]
 ) -> _Idle:
-    """The idle motions, each with a unit in one of the `named` coordinates, the `left` ones following: K_ll n_l = -K_ln."""
+    """Free internal modes, each with a unit in one of the `named` coordinates; the `left` ones follow: K_ll n_l = -K_ln."""
     stiffness = assemble({name: _through(item, basis) for name, item in stage.strains.items()}, basis.shape[-1])
     inner = stiffness[..., left, :][..., left]
     root = np.sqrt(np.abs(np.diagonal(np.real(inner), axis1=-2, axis2=-1)))
@@ -428,32 +432,32 @@ def _idle(
 
 
 def _largest(inertia: Mapping[str, Contribution], motions: Array, coordinates: tuple[str, ...]) -> Array:
-    """What n^T M n (..., k) would be if nothing in its sum cancelled: an idle motion with much less has no inertia but rounding.
+    """Sum of magnitudes of the terms of n^T M n (..., k): a free internal mode with much less inertia has rounding only.
 
-    Coordinates that stand still but for rounding count as if they moved by a share of the largest, 0.1 m making lengths of angles.
+    Coordinates at rest (to rounding) count as if they moved by a fraction of the largest, with angles times 0.1 m.
     """
     lengths = np.array([0.1 if name.rpartition(".")[2].startswith("r") else 1.0 for name in coordinates])[:, None]
     least = _STILL * np.max(lengths * np.abs(motions), axis=-2, keepdims=True) / lengths
     total = np.zeros(motions.shape[-1])
     for item in inertia.values():
-        seen = np.abs(np.real(item.operator)) @ np.maximum(np.abs(motions), least)
-        total = total + np.sum(seen * (np.abs(np.real(item.law)) @ seen), axis=-2)
+        strains = np.abs(np.real(item.operator)) @ np.maximum(np.abs(motions), least)
+        total = total + np.sum(strains * (np.abs(np.real(item.law)) @ strains), axis=-2)
     return total
 
 
 def _heavy_of_all(mass: Array, largest: Array) -> tuple[int, ...]:
-    """`_heavy` of the first design of (..., k, k); refused where another one's are others."""
+    """`_heavy` of the first design of (..., k, k); raises if another design differs."""
     batch, count = np.broadcast_shapes(mass.shape[:-2], largest.shape[:-1]), mass.shape[-1]
     masses = np.broadcast_to(mass, (*batch, count, count)).reshape(-1, count, count)
     first, *others = map(_heavy, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
     for number, heavy in enumerate(others, 1):
         if heavy != first:
-            raise unlike(number, "has inertia in other idle motions than the first")
+            raise unlike(number, "has inertia in other free internal modes than the first")
     return first
 
 
 def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
-    """As many idle motions as have inertia of their own; M-orthogonal to these is M-orthogonal to all."""
+    """As many free internal modes as have independent inertia; M-orthogonality to these implies M-orthogonality to all."""
     some = np.flatnonzero(np.diag(mass) > _MASSLESS * largest)
     if not len(some):
         return ()
@@ -464,12 +468,12 @@ def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
 
 
 def _momentum(inertia: Mapping[str, Contribution], motion: Array) -> Array:
-    """M times a motion (..., N, m)."""
+    """Multiply M by a motion (..., N, m)."""
     return strain_forces(inertia, {name: item.operator @ motion for name, item in inertia.items()}) if inertia else np.zeros_like(motion)
 
 
 def _unsprung(stage: _Stage, output: Array) -> Array:
-    """The output rows (..., p, N) without those of link forces, which know what is imposed by their own deformation."""
+    """Output rows (..., p, N) without link forces, which include imposed motions by their own deformation."""
     forces = 6 * len(wrench_owners(stage.assembly))
     return np.concatenate([output[..., : output.shape[-2] - forces, :], np.zeros((*output.shape[:-2], forces, output.shape[-1]))], axis=-2)
 
@@ -490,7 +494,7 @@ def _loose(stage: _Stage, basis: Array | None) -> Array:
 
 
 def _strains(stage: _Stage, basis: Array | None, of_designs: Callable[[Array], Array]) -> dict[str, Contribution]:
-    """The links' real strains in the independent coordinates, without rounding, of the designs that are picked."""
+    """Real strains of the links in the independent coordinates, without rounding, of selected designs."""
     own = None if basis is None else of_designs(basis)
     return {
         name: Contribution(_without_rounding(of_designs(item.operator), own), of_designs(item.law)) for name, item in stage.strains.items()
@@ -498,7 +502,7 @@ def _strains(stage: _Stage, basis: Array | None, of_designs: Callable[[Array], A
 
 
 def _softest(stiffness: Array) -> tuple[Array, Array]:
-    """Eigenvalues (k,) below `SINGULAR` of one stiffness (n, n) with its diagonal scaled to one, ascending, and their motions (n, k)."""
+    """Eigenvalues (k,) below `SINGULAR` of a stiffness (n, n) scaled to a unit diagonal, ascending, and their motions (n, k)."""
     diagonal = np.sqrt(np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0))
     scaled = stiffness / diagonal / diagonal[:, None]
     try:
@@ -512,7 +516,7 @@ def _softest(stiffness: Array) -> tuple[Array, Array]:
 
 
 def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[int, ...], named: list[int]) -> None:
-    """Refuse designs of a batch with other motions without stiffness than the first, or whose `named` coordinates hardly tell them."""
+    """Refuse batch designs whose motions without stiffness differ from the first, or hardly depend on the `named` coordinates."""
     if stage.order.sparse or all(item.operator.ndim == item.law.ndim == 2 for item in stage.strains.values()):
         return
     laws = (np.diagonal(np.real(item.law), axis1=-2, axis2=-1) for item in stage.strains.values())
@@ -523,28 +527,28 @@ def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[i
     for number in range(1, len(designs)):
         if np.all(np.isfinite(designs[number])) and not np.array_equal(designs[number], designs[number - 1]):
             values, loose = _softest(designs[number])
-            steady = np.min(values, initial=0.0) >= -SINGULAR  # others have no numbers: `_stable`
+            steady = np.min(values, initial=0.0) >= -SINGULAR  # other designs are NaN: `_stable`
             if steady and (loose.shape[1] != len(named) or _moves_platform(loose, independent) or not _told_apart(loose, named)):
                 raise unlike(number, "has other motions without stiffness than the first")
 
 
 def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignError:
-    """The refusal of a stage that negative stiffnesses push out of its drawn position in a `motion` (N,): which, where, and up to what."""
+    """Error of a nominal position that negative stiffnesses make unstable in a `motion` (N,): parts, values and stable limits."""
     depths = {name: negative_part(strains[name].law, _OVER) for name in stage.assembly.links}
     pushing = {name: Contribution(strains[name].operator, depth) for name, depth in depths.items() if depth.any()}
     size = strains[next(iter(strains))].operator.shape[-1]
     steep = assemble(pushing, size)
     share = _critical_share(assemble(strains, size) + steep, steep)
-    told = ", ".join(f"{name} has {_least_entry(np.diag(strains[name].law), share)}" for name in pushing)
-    what = f"the drawn position is not stable: {told}, which is what the stage holds. {_largest_coordinate(stage, motion)} gives way"
+    stiffnesses = ", ".join(f"{name} has {_least_entry(np.diag(strains[name].law), share)}" for name in pushing)
+    what = f"the nominal position is unstable: {stiffnesses}, the stable limit. The stage buckles in {_largest_coordinate(stage, motion)}"
     return refuse(", ".join(pushing), what, "Make it less negative, or the stage stiffer in that motion")
 
 
-def _critical_share(rest: Array, steep: Array) -> float:
-    """By what the negative stiffness `steep` may be multiplied at most before it exceeds what the `rest` (n, n) holds."""
-    root = np.sqrt(np.where(np.diag(rest) > 0.0, np.diag(rest), 1.0))
-    rest, steep = (each / root / root[:, None] for each in (rest, steep))
-    values, vectors = np.linalg.eigh(rest)
+def _critical_share(other: Array, steep: Array) -> float:
+    """Largest stable factor on the negative stiffness `steep`, given the other stiffness `rest` (n, n)."""
+    root = np.sqrt(np.where(np.diag(other) > 0.0, np.diag(other), 1.0))
+    other, steep = (each / root / root[:, None] for each in (other, steep))
+    values, vectors = np.linalg.eigh(other)
     loose, held = vectors[:, values < SINGULAR], vectors[:, values >= SINGULAR]
     if np.max(np.diag(loose.T @ steep @ loose), initial=0.0) > SINGULAR * np.max(np.diag(steep)):
         return 0.0
@@ -553,7 +557,7 @@ def _critical_share(rest: Array, steep: Array) -> float:
 
 
 def _least_entry(diagonal: Array, share: float) -> str:
-    """The most negative stiffness of a part by freedom, rotations over 0.1 m, and the share of it that is stable."""
+    """The most negative stiffness of a part by freedom, rotations over 0.1 m, and its stable fraction."""
     place = int(np.argmin(diagonal / _OVER**2))
     if diagonal[place] >= 0.0:
         return f"a negative stiffness where freedoms are coupled, beyond {share:.4g} times that"
@@ -562,12 +566,12 @@ def _least_entry(diagonal: Array, share: float) -> str:
 
 
 def _largest_coordinate(stage: _Stage, motion: Array) -> str:
-    """The coordinate that moves most, rotations over 0.1 m."""
+    """The coordinate of largest motion, rotations over 0.1 m."""
     return stage.order.coordinates[int(np.argmax(np.abs(motion) * sign_weights(stage.order.coordinates)))]
 
 
 def _stable(stage: _Stage, strains: Contributions, size: int) -> Contributions:
-    """The contributions; a later design of a batch that negative stiffnesses make unstable has no numbers."""
+    """The contributions, with NaN for later designs of a batch that negative stiffnesses make unstable."""
     links = stage.assembly.links.items()
     stated = next((name for name, link in links if (known := law_of(link.part)) is not None and known.stiffness is not None), None)
     if stated is None or stage.order.sparse:
@@ -580,7 +584,7 @@ def _stable(stage: _Stage, strains: Contributions, size: int) -> Contributions:
 
 
 def _without_rounding(operator: Array, basis: Array | None) -> Array:
-    """The operator in the basis without entries that are only rounding: else an idle coordinate would seem to have some stiffness."""
+    """The operator in the basis without entries of pure rounding, which would give an idle coordinate a spurious stiffness."""
     if basis is None:
         return operator
     product = operator @ basis
@@ -589,11 +593,11 @@ def _without_rounding(operator: Array, basis: Array | None) -> Array:
 
 
 def _loose_coordinates(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
-    """Coordinates that tell the loose motions apart; a loose motion that moves the platform makes the stage a mechanism."""
+    """Coordinates that distinguish the loose motions; raises for a mechanism, with a loose motion of the platform."""
     if _moves_platform(loose, independent):
         raise refuse(
             "stage",
-            f"the stiffness matrix is singular: {loose.shape[1]} motion(s) without any stiffness move the platform, and with it "
+            f"the stiffness matrix is singular: {loose.shape[1]} motion(s) without stiffness move the platform and "
             f"{', '.join(_moving(stage, loose, independent))}",
             "Add a link that holds this motion, or check which freedoms the links leave free",
         )
@@ -607,12 +611,12 @@ def _moves_platform(loose: Array, independent: tuple[int, ...]) -> bool:
 
 
 def _told_apart(loose: Array, named: list[int]) -> bool:
-    """Whether the named coordinates tell the loose motions (n, k) apart."""
+    """Whether the named coordinates distinguish the loose motions (n, k)."""
     return not named or bool(np.linalg.svd(_as_ones(loose)[named], compute_uv=False)[-1] > _APART)
 
 
 def _as_ones(motions: Array) -> Array:
-    """Motions (n, k) of which the largest coordinate is one."""
+    """Motions (n, k) scaled to a largest coordinate of one."""
     return motions / np.max(np.abs(motions), axis=0, initial=0.0)
 
 
@@ -653,21 +657,21 @@ def _of_link(name: str) -> str:
 
 
 def _carrier_forces(stage: _Stage, inertia: Mapping[str, Contribution]) -> Array:
-    """Inertial forces (..., n, 6) on the coordinates when everything, the ground included, is accelerated rigidly."""
+    """Inertial forces (..., n, 6) on the coordinates under a rigid acceleration of the stage and the ground."""
     centre = stage.assembly.bodies[PLATFORM].reference
-    seen = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
+    carried = {name: stage.rigid[..., stage.order.columns(name), :] for name in stage.order.bodies}
     for name, link in stage.assembly.links.items():
         carry = twist_transform(link.frame, centre)
         still = np.zeros((*carry.shape[:-2], stage.order.inner.get(name, 0), 6))
-        seen[_of_link(name)] = np.concatenate([carry, carry, still], axis=-2)
+        carried[_of_link(name)] = np.concatenate([carry, carry, still], axis=-2)
     for name, element in stage.assembly.superelements.items():
         carries = [twist_transform(port.frame, centre) for port in element.ports.values()]
-        seen[_of_link(name)] = np.concatenate(_broadcast((*carries, np.zeros((stage.order.inner[name], 6)))), axis=-2)
-    return strain_forces(inertia, seen) if inertia else np.zeros((stage.order.size, 6))
+        carried[_of_link(name)] = np.concatenate(_broadcast((*carries, np.zeros((stage.order.inner[name], 6)))), axis=-2)
+    return strain_forces(inertia, carried) if inertia else np.zeros((stage.order.size, 6))
 
 
 def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idle, carried: Array) -> Array:
-    """What accelerating the ground exerts on the idle motions (..., k, 6), without what is only rounding."""
+    """Inertial forces on the free internal modes per ground acceleration (..., k, 6), without rounding."""
     exerted = _transpose(idle.motions) @ carried
     names = stage.order.coordinates
     spin, rigid = (_largest(inertia, np.real(motions), names) for motions in (idle.motions, stage.rigid))
@@ -676,7 +680,7 @@ def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idl
 
 
 def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array]]:
-    """Direct forces, and what the inputs impose on links: strokes of sprung actuators, less what a motion imposed elsewhere takes up."""
+    """Direct forces, and imposed deformations of links: strokes of sprung actuators, less the part of motions imposed elsewhere."""
     wrenches = [_transpose(rows) for rows in place_twists(wrench_places(stage.assembly), stage.motions)]
     columns = _broadcast((np.zeros((stage.order.size, len(stage.assembly.actuators))), *wrenches))
     force = np.concatenate(columns, axis=-1)
@@ -689,7 +693,7 @@ def _inputs(stage: _Stage, driven: Array | None) -> tuple[Array, dict[str, Array
 
 
 def _strokes(stage: _Stage) -> dict[str, Array]:
-    """What every input imposes on the links of stroke actuators (..., r, inputs): their free deformations, nothing on inner coordinates."""
+    """Imposed deformations of stroke-actuator links (..., r, inputs): their free deformations, zero on inner coordinates."""
     free: dict[str, Array] = {}
     for name, link in stage.assembly.strokes.items():
         own = stage.assembly.actuator(name).free_deformation
@@ -716,7 +720,7 @@ def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]
 
 
 def _port_wrenches(element: PlacedSuperelement) -> Array:
-    """What gives the wrenches (..., 6 p, 6 (p - 1)) at all ports from those at all but the first, which balances them."""
+    """Matrix (..., 6 p, 6 (p - 1)) to the wrenches at all ports from those at all but the first, which balances them."""
     first, *others = (port.frame for port in element.ports.values())
     carries = [twist_transform(frame, first.position) @ spatial_rotation(first.rotation) for frame in others]
     balance = -_transpose(np.concatenate(_broadcast(tuple(carries)), axis=-2))
@@ -729,7 +733,7 @@ def _rigid_coordinates(stage: _Stage, coordinates: tuple[str, ...]) -> Array:
 
 
 def _rigid_output(stage: _Stage, output: Array, carried: Array, idle: _Idle | None) -> Array:
-    """Outputs that move with the ground (..., p, 6); idle motions stay behind, as nothing but inertia moves them."""
+    """Outputs that move with the ground (..., p, 6); free internal modes stay behind, as only inertia moves them."""
     carried_along = np.where(absolute(stage.assembly)[:, None], output @ stage.rigid, 0.0)
     return carried_along if idle is None else carried_along + output @ idle.momentless(carried)
 

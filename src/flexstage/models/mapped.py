@@ -1,6 +1,6 @@
 """Mapped model: the paper's axial-spring model (Eqs. 17-28 of Shin & Moon).
 
-K = R_a^T diag(K_i) R_a with each unit's own stiffness in actuator coordinates, M of the platform alone. Units are massless, hinges have no
+K = R_a^T diag(K_i) R_a with the stiffness of each unit in actuator coordinates, M of the platform only. Units are massless, hinges have no
 bending stiffness.
 """
 
@@ -38,7 +38,7 @@ _COLLINEAR = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class LeverStiffness:
-    """The springs of a lever unit as in Fig. 7 and Eqs. 3-11 of the paper, SI.
+    """Springs of a lever unit as in Fig. 7 and Eqs. 3-11 of the paper, SI.
 
     `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, `long_arm` r_2.
     """
@@ -53,17 +53,17 @@ class LeverStiffness:
 
     @property
     def softness(self) -> Number:
-        """eps = K_theta2 / (r_1^2 K_1): the pivot against the drive."""
+        """eps = K_theta2 / (r_1^2 K_1): stiffness ratio of pivot and drive."""
         return self.pivot / (self.short_arm**2 * self.drive)
 
     @property
     def gain(self) -> Annotated[Number, RATIO]:
-        """Eq. 11's first term: output per stroke, (r_2 / r_1) / (1 + eps)."""
+        """First term of Eq. 11: output per stroke, (r_2 / r_1) / (1 + eps)."""
         return self.long_arm / self.short_arm / (1.0 + self.softness)
 
     @property
     def tip_compliance(self) -> Annotated[Number, COMPLIANCE]:
-        """Eq. 11's load term: r_2^2 / (K_theta2 + r_1^2 K_1) + 1 / K_3 [m/N]."""
+        """Load term of Eq. 11: r_2^2 / (K_theta2 + r_1^2 K_1) + 1 / K_3 [m/N]."""
         return self.long_arm**2 / (self.pivot + self.short_arm**2 * self.drive) + 1.0 / self.pole
 
     @property
@@ -74,10 +74,11 @@ class LeverStiffness:
 
 @check_arguments
 def mapped(mechanism: Mechanism) -> LinearModel:
-    """Read a stage as the paper does: axial springs in actuator coordinates under a rigid platform.
+    """Build the model of the paper: axial springs in actuator coordinates under a rigid platform.
 
-    Each unit's stiffness is stated in the description, or computed for direct units (a straight strut) and lever units. Raises
-    `DesignError` naming every other unit and the key that states it.
+    The stiffness of each unit is specified in the description, or computed for direct units (a straight strut) and lever units.
+
+    Raises `DesignError` for every other unit, with the key that specifies its stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> (mapped(double_triangle()).stiffness_matrix[0, 0] / 1e6).round(2).item()  # 1.5 K_a
@@ -89,17 +90,17 @@ def mapped(mechanism: Mechanism) -> LinearModel:
     springs = unit_stiffness(mechanism, assembly, kinematics)
     mass = moving_inertia(mechanism, assembly.bodies[PLATFORM])
     if mass is None:
-        raise refuse("bodies.platform", "it has no mass", "State its mass, centre and inertia, or give it solids")
+        raise refuse("bodies.platform", "it has no mass", "Specify its mass, centre and inertia, or give it solids")
     return _model(mechanism, kinematics, springs, mass, _points(assembly, kinematics))
 
 
 def _points(assembly: Assembly, kinematics: Kinematics) -> dict[str, tuple[Array, Array]]:
-    """The ideal motion (..., 6, f) of the platform and of every named point, and that (..., 6, 6) when all moves with the ground."""
+    """Ideal motions (..., 6, f) of the platform and of every named point, and their rigid motion (..., 6, 6) with the ground."""
     order, centre = layout(assembly), assembly.bodies[PLATFORM].reference
-    found = {PLATFORM: (kinematics.motion, np.eye(6))}
+    motions = {PLATFORM: (kinematics.motion, np.eye(6))}
     for name, (body, point) in assembly.points.items():
-        found[name] = twist_at(assembly, order, body, Frame(np.eye(3), point)) @ kinematics.bodies, transport(point - centre)
-    return found
+        motions[name] = twist_at(assembly, order, body, Frame(np.eye(3), point)) @ kinematics.bodies, transport(point - centre)
+    return motions
 
 
 def _model(
@@ -142,10 +143,10 @@ def _broadcast(*arrays: Array) -> list[Array]:
 
 
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
-    """Stiffness of every actuator's unit in actuator coordinates [N/m], stated or computed.
+    """Return the stiffness of every actuator's unit in actuator coordinates [N/m], specified or computed.
 
-    A unit that is neither a straight strut nor a lever is read as the chain of links that bear its load (`borne_compliance`), where the
-    `kinematics` are given and statics alone says which those are.
+    A unit that is neither a straight strut nor a lever is the chain of links that carry its load (`borne_compliance`), if the `kinematics`
+    are given and statics determines those links.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -158,26 +159,28 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
     for name, drive in assembly.strokes.items():
         owner = drive.rpartition("/")[0]
         copy = owner if owner in unit_of else ""
-        stated = mechanism.units[unit_of[copy]].stiffness if copy else None
+        specified = mechanism.units[unit_of[copy]].stiffness if copy else None
         try:
-            result[name] = stated if stated is not None else computed_stiffness(assembly, drive)
+            result[name] = specified if specified is not None else computed_stiffness(assembly, drive)
         except DesignError as error:
-            if kinematics is not None and (borne := borne_compliance(assembly, kinematics, name)) is not None:
-                result[name] = 1.0 / borne
+            if kinematics is not None and (chain_compliance := borne_compliance(assembly, kinematics, name)) is not None:
+                result[name] = 1.0 / chain_compliance
                 continue
-            key = f"State units.{unit_of[copy]}.stiffness" if copy else "Draw the actuator in a unit, whose stiffness can be stated"
+            key = f"Specify units.{unit_of[copy]}.stiffness" if copy else "Place the actuator in a unit with a specified stiffness"
             findings += [Finding(item.where, item.what, f"{key}, or use the lumped model") for item in error.findings]
     require(findings)
     return result
 
 
 def borne_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
-    """Compliance [m/N] in an actuator's coordinate of all links that bear its load: the sum of f^T C f, by virtual work.
+    """Compute the compliance [m/N] in an actuator coordinate of all links that carry its load: the sum of f^T C f, by virtual work.
 
-    f is what a link bears in its locked freedoms, in equilibrium, strokes held, under a wrench on the platform that loads this actuator
-    alone, V^T w = R_a^T e, and no guide: what bears wrenches that move nothing is rigid in this model. Free freedoms bear nothing, ideal
-    joints give way nowhere. None where statics does not say what the links bear (redundant constraints take part, or a guide does), where
-    one of them has no known compliance, or where nothing is elastic.
+    f is the wrench in the locked freedoms of a link, in equilibrium with fixed strokes, under a platform wrench that loads only this
+    actuator, V^T w = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free freedoms carry nothing;
+    ideal joints are rigid.
+
+    `None` if statics does not determine f (redundant constraints or a guide contribute), if a link has no known compliance, or if nothing
+    is elastic.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -197,25 +200,25 @@ def borne_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) 
 
 
 def _idle_wrenches(kinematics: Kinematics) -> Array:
-    """Wrenches (..., 6, 6 - f) that do no work in any ideal motion."""
-    rest = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
+    """Wrenches (..., 6, 6 - f) without work in any ideal motion."""
+    complement = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
     count = 6 - kinematics.mobility
-    chosen = np.array([scipy.linalg.qr(each, pivoting=True)[2][:count] for each in np.real(rest).reshape(-1, 6, 6)], dtype=int)
-    return np.take_along_axis(rest, chosen.reshape(*rest.shape[:-2], 1, count), axis=-1)
+    chosen = np.array([scipy.linalg.qr(each, pivoting=True)[2][:count] for each in np.real(complement).reshape(-1, 6, 6)], dtype=int)
+    return np.take_along_axis(complement, chosen.reshape(*complement.shape[:-2], 1, count), axis=-1)
 
 
 def _work(assembly: Assembly, locked: Mapping[str, list[int]], forces: Array) -> Number | None:
-    """f^T C f of all links that bear something; none where a compliance is not known, or nothing gives way."""
+    """f^T C f of all loaded links; `None` if a compliance is unknown, or nothing is elastic."""
     total, start = np.zeros(()), 0
     largest = np.max(np.abs(np.real(forces)), axis=-1, keepdims=True)
     for name, axes in locked.items():
-        borne = forces[..., start : start + len(axes)]
+        wrench = forces[..., start : start + len(axes)]
         start += len(axes)
-        if np.any(np.abs(np.real(borne)) > _COLLINEAR * largest) and not isinstance(assembly.links[name].part, Joint):
+        if np.any(np.abs(np.real(wrench)) > _COLLINEAR * largest) and not isinstance(assembly.links[name].part, Joint):
             matrix = _known_compliance(assembly.links[name])
             if matrix is None:
                 return None
-            total = total + np.einsum("...i,...ij,...j", borne, matrix[..., axes, :][..., axes], borne)
+            total = total + np.einsum("...i,...ij,...j", wrench, matrix[..., axes, :][..., axes], wrench)
     return None if np.all(np.real(total) == 0.0) else total
 
 
@@ -227,11 +230,12 @@ def _known_compliance(link: PlacedLink) -> Array | None:
 
 
 def _equilibrium(rows: Array, loads: Array, rigid: Array, length: Number) -> Array | None:
-    """Forces (..., m) of constraints (..., m, N) that hold the first load (..., N, k), with any amount of the others added.
+    """Forces (..., m) of constraints (..., m, N) that balance the first load (..., N, k), plus any amount of the others.
 
-    Elastic constraints whose force is a matter of choice bear nothing: redundant ones, and guides, which the other loads would load. Those
-    that are `rigid` (m,) bear what is needed, which is not told. None where the first load of a design cannot be held so. Every design of a
-    batch has choices of its own.
+    Elastic constraints with undetermined force carry nothing: redundant ones, and guides, which the other loads would load. `rigid` (m,)
+    constraints carry the balance, which is not returned.
+
+    `None` if the first load of a design cannot be balanced this way. Every design of a batch has its own choice.
     """
     batch, (count, size) = rows.shape[:-2], rows.shape[-2:]
     full = np.concatenate([np.swapaxes(rows, -1, -2), loads[..., 1:], loads[..., :1]], axis=-1).reshape(-1, size, count + loads.shape[-1])
@@ -249,35 +253,35 @@ def _equilibrium(rows: Array, loads: Array, rigid: Array, length: Number) -> Arr
 
 
 def _bearing(system: Array, rigid: Array) -> tuple[Array, Array] | None:
-    """Equations and columns of constraints and other loads, in one design (N, m + k), that hold the load in the last column by these."""
-    count, wanted = len(rigid), system[:, -1]
+    """Equations and columns of the constraints and other loads in one design (N, m + k) that balance the load in the last column."""
+    count, target = len(rigid), system[:, -1]
     columns = _normal(system[:, :-1].T).T
     open_ = np.max(np.abs(null_space(columns)), axis=1, initial=0.0)[:count] > _COLLINEAR
     candidates = np.append(np.flatnonzero(rigid | ~open_), np.arange(count, columns.shape[1]))
     _, triangle, order = scipy.linalg.qr(columns[:, candidates], pivoting=True)
     diagonal = np.abs(np.diag(triangle))
     chosen = candidates[order[: int(np.sum(diagonal > _COLLINEAR * diagonal[0]))]]
-    missed = wanted - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], wanted, rcond=None)[0]
-    if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(wanted)):
+    missed = target - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], target, rcond=None)[0]
+    if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(target)):
         return None
     return scipy.linalg.qr(columns[:, chosen].T, pivoting=True)[2][: len(chosen)], chosen
 
 
 def _normal(rows: Array) -> Array:
-    """Rows of length one; those of nothing stay."""
+    """Rows scaled to unit length; zero rows are unchanged."""
     norms = np.linalg.norm(rows, axis=1)
     return rows / np.where(norms > 0.0, norms, 1.0)[:, None]
 
 
 def computed_stiffness(assembly: Assembly, drive: str) -> Number:
-    """Stiffness in actuator coordinates of a direct or a lever unit, by the name of its actuator's link.
+    """Compute the stiffness in actuator coordinates of a direct or a lever unit, by the name of its actuator's link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(computed_stiffness(expand(double_triangle()), "B4/pzt")) / 1e6, 2)
     30.28
     """
     if np.any(np.real(actuator_of(assembly.links[drive].part).free_deformation)[..., 1:]):
-        raise refuse(drive, "its stroke is not along its axis, as the springs in series that this model knows would have it", "")
+        raise refuse(drive, "its stroke is not along its axis, which the series springs of this model require", "")
     ways = _ways(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     if levers:
@@ -290,7 +294,7 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
 
 
 def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
-    """The springs and arms of a lever unit: drive ground - lever, one pivot ground - lever, pole lever - platform.
+    """Compute the springs and arms of a lever unit: drive ground - lever, one pivot ground - lever, pole lever - platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(lever_stiffness(expand(double_triangle()), "B4/pzt").gain) / 3, 3)  # Table 2: 585 of 600
@@ -302,9 +306,9 @@ def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
     driving = _chain(ways, assembly, drive, stop)
     if len(levers) != 1 or sorted(_ends(driving)) != sorted((GROUND, levers[0])):
         raise refuse(drive, f"its unit is neither a straight strut nor a single lever (branching bodies: {', '.join(levers)})", "")
-    rest = [link for link in ways[levers[0]] if link not in driving]
-    pivots = [link for link in rest if GROUND in link.joins]
-    poles = [link for link in rest if GROUND not in link.joins]
+    others = [link for link in ways[levers[0]] if link not in driving]
+    pivots = [link for link in others if GROUND in link.joins]
+    poles = [link for link in others if GROUND not in link.joins]
     if len(pivots) != 1 or len(poles) != 1:
         raise refuse(drive, f"its lever has {len(pivots)} pivots to ground and {len(poles)} output poles, expected one each", "")
     pole = _chain(ways, assembly, poles[0].name, stop)
@@ -321,7 +325,7 @@ def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
 
 
 def _ways(assembly: Assembly, drive: str) -> dict[str, list[PlacedLink]]:
-    """Links at each body, within the actuator's own unit."""
+    """Links at each body, within the unit of the actuator."""
     owner = drive.rpartition("/")[0]
     ways: dict[str, list[PlacedLink]] = {}
     for link in assembly.links.values():
@@ -335,14 +339,14 @@ def _chain(ways: Mapping[str, list[PlacedLink]], assembly: Assembly, start: str,
     """The links in series with one link, up to bodies of `stop` or dead ends."""
     chain = [assembly.links[start]]
     for body in assembly.links[start].joins:
-        here, last = body, chain[0] if body == assembly.links[start].joins[0] else assembly.links[start]
-        while here not in stop:
-            onward = [link for link in ways[here] if link.name != last.name]
+        body_reached, last = body, chain[0] if body == assembly.links[start].joins[0] else assembly.links[start]
+        while body_reached not in stop:
+            onward = [link for link in ways[body_reached] if link.name != last.name]
             if len(onward) != 1:
                 break
             last = onward[0]
             chain.append(last)
-            here = last.joins[1] if last.joins[0] == here else last.joins[0]
+            body_reached = last.joins[1] if last.joins[0] == body_reached else last.joins[0]
     return chain
 
 
@@ -352,13 +356,13 @@ def _ends(chain: list[PlacedLink]) -> list[str]:
 
 
 def _series(chain: list[PlacedLink], line: PlacedLink) -> Array:
-    """Compliance in series along the line of one link; every link must lie on that line."""
+    """Series compliance along the line of one link; every link must be on that line."""
     axis = line.frame.rotation[..., :, 0]
     total: Array = np.zeros(())
     for link in chain:
         offset = np.max(np.abs(np.real(_perpendicular(link.frame.position - line.frame.position, axis))))
         if offset > _COLLINEAR:
-            raise refuse(link.name, f"it lies {offset * 1e3:.4g} mm beside the line of {line.name}, expected 0", "")
+            raise refuse(link.name, f"offset from the line of {line.name} (got {offset * 1e3:.4g} mm, expected 0)", "")
         local = (np.swapaxes(link.frame.rotation, -1, -2) @ axis[..., None])[..., 0]
         matrix = _compliance(link)[..., :3, :3]
         total = total + (local[..., None, :] @ matrix @ local[..., :, None])[..., 0, 0]
@@ -366,7 +370,7 @@ def _series(chain: list[PlacedLink], line: PlacedLink) -> Array:
 
 
 def _compliance(link: PlacedLink) -> Array:
-    """Compliance of a link's part; a restricted part gives its elastic freedoms only, and what it frees has no stiffness to state."""
+    """Compliance of a link's part; for a restricted part only of its elastic freedoms, as freed ones have no stiffness."""
     part = link.part
     if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
         raise refuse(link.name, "it is an ideal joint or has no axial stiffness, and the unit's stiffness needs one", "")

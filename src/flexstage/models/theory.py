@@ -1,4 +1,4 @@
-"""The models of a stage by name. Light: the command line names them without loading them."""
+"""Models of a stage by name, without import of their modules (for the command line)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Model(Enum):
-    """Models of theory: ideal kinematics, the paper's axial springs, lumped 6x6 hinges."""
+    """Models of theory: ideal kinematics, axial springs of the paper, lumped 6x6 hinges."""
 
     IDEAL = "ideal"
     MAPPED = "mapped"

@@ -32,7 +32,7 @@ from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.mass import tensor
 from flexstage.parts.material import Material
-from flexstage.parts.stated import Stated, is_even, mirror_rows, point_masses, symmetry_findings, turns_into_itself
+from flexstage.parts.stated import Stated, definite_findings, is_even, mirror_rows, point_masses, turns_into_itself
 
 _Along: TypeAlias = Annotated[Number, STIFFNESS, POSITIVE]
 _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS, POSITIVE]
@@ -97,12 +97,8 @@ class BetweenFaces(StrokeActuator):
             found = f"it states {' and '.join(stated)}" if stated else "it states no stiffness across its axis"
             yield Finding("", found, "State one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
             return
-        own = stack(getattr(self, stated[0]))
-        if own.ndim > 1 and stated[0] != "diagonal":
-            asymmetric = list(symmetry_findings(stated[0], own))
-            yield from asymmetric
-            if not asymmetric and np.any(np.linalg.eigvalsh(_scaled(own)) <= 0.0):
-                yield Finding(stated[0], "it is not positive definite", "Check signs and units of its entries")
+        if stated[0] != "diagonal":
+            yield from definite_findings(stated[0], stack(getattr(self, stated[0])))
 
 
 def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
@@ -111,18 +107,11 @@ def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
         if value is None:
             continue
         if name == "inertia":
-            yield name, replace(value, xy=-value.xy, yz=-value.yz)
+            yield name, value.mirrored
         elif name == "deformation":
             yield name, tuple(sign * each for sign, each in zip((1.0, -1.0, 1.0, -1.0, 1.0, -1.0), value, strict=True))
         else:
             yield name, mirror_rows(value)
-
-
-def _scaled(matrix: Array) -> Array:
-    real = np.real(matrix)
-    size = np.sqrt(np.abs(np.diagonal(real, axis1=-2, axis2=-1)))
-    size = np.where(size > 0.0, size, 1.0)
-    return real / size[..., :, None] / size[..., None, :]
 
 
 @dataclass(frozen=True, eq=False)

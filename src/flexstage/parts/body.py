@@ -278,6 +278,20 @@ class Inertia(Description):
     xz: Annotated[Number, INERTIA] = 0.0
     yz: Annotated[Number, INERTIA] = 0.0
 
+    @property
+    def mirrored(self) -> Inertia:
+        """That of the image in the plane across y."""
+        return replace(self, xy=-self.xy, yz=-self.yz)
+
+
+def across(vector: Vector) -> Vector:
+    """The image of a place or a direction in the plane across y.
+
+    >>> across((1.0, 2.0, 3.0))
+    (1.0, -2.0, 3.0)
+    """
+    return (vector[0], -vector[1], vector[2])
+
 
 @dataclass(frozen=True, eq=False)
 class Imported(Solid):
@@ -308,10 +322,8 @@ class Imported(Solid):
 
     @property
     def mirrored(self) -> Imported:
-        """The image of the file's solid across its x-z plane: what is stated of it stands on the other side."""
-        x, y, z = self.middle
-        middle, centre = (x, -y, z), (self.centre[0], -self.centre[1], self.centre[2])
-        inertia = replace(self.inertia, xy=-self.inertia.xy, yz=-self.inertia.yz)
+        """Its image in the plane across y."""
+        middle, centre, inertia = across(self.middle), across(self.centre), self.inertia.mirrored
         return replace(self, middle=middle, centre=centre, inertia=inertia, reflected=not self.reflected)
 
     @property

@@ -13,12 +13,12 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number, Vector, stack
 from flexstage.base.storage.digest import DOCUMENT_ONLY, Description
 from flexstage.base.units.quantity import COMPLIANCE_MATRIX, LENGTH, MASS, NOT_NEGATIVE
-from flexstage.parts.body import Inertia
+from flexstage.parts.body import Inertia, across
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.mass import tensor
 from flexstage.parts.material import Material
 from flexstage.parts.shape import Elastic
-from flexstage.parts.stated import Stated, halves, is_even, mirror_rows, point_masses, turns_into_itself
+from flexstage.parts.stated import Stated, definite_findings, halves, is_even, mirror_rows, point_masses, turns_into_itself
 from flexstage.spatial.frame import rigid_inertia
 
 
@@ -58,8 +58,8 @@ class ComplianceMatrix(Elastic):
     @property
     def mirrored(self) -> ComplianceMatrix:
         """Its compliance with the entries reversed that tell a motion along y, or a rotation about x or z, with another one."""
-        inertia = None if self.inertia is None else replace(self.inertia, xy=-self.inertia.xy, yz=-self.inertia.yz)
-        centre = None if self.centre is None else (self.centre[0], -self.centre[1], self.centre[2])
+        inertia = None if self.inertia is None else self.inertia.mirrored
+        centre = None if self.centre is None else across(self.centre)
         return replace(self, compliance=mirror_rows(self.compliance), centre=centre, inertia=inertia)
 
     @property
@@ -68,6 +68,7 @@ class ComplianceMatrix(Elastic):
         for name in ("centre", "inertia"):
             if getattr(self, name) is not None and np.any(np.real(self.mass) == 0.0):
                 yield Finding(name, "it is stated without a mass", "State the mass too")
+        yield from definite_findings("compliance", stack(self.compliance))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
         """The inverse of its compliance; half of its mass at each end, both at its centre, or half of the rigid solid that is stated."""

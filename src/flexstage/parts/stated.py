@@ -118,7 +118,23 @@ def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
         flat = [each.reshape(-1, 6, 6) for each in (unequal, real, mirrored)]
         at = tuple(np.argwhere(flat[0])[0])
         what = f"it is not symmetric: {flat[1][at]:.6g} and {flat[2][at]:.6g} SI"
-        yield Finding(where, what, "Give equal entries on both sides")
+        yield Finding(f"{where} at index {at[1]}, {at[2]}", what, "Give equal entries on both sides")
+
+
+def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
+    """Findings about a 6x6 that is not symmetric, or not positive definite.
+
+    >>> [each.what[:28] for each in definite_findings("matrix", np.diag([1.0, 1.0, 1.0, 1.0, 1.0, -1.0]))]
+    ['it is not positive definite:']
+    """
+    unequal = tuple(symmetry_findings(where, matrix))
+    yield from unequal
+    scale = np.sqrt(np.abs(np.einsum("...ii->...i", np.real(matrix))))
+    safe = np.where(scale > 0.0, scale, 1.0)
+    lowest = np.min(np.linalg.eigvalsh(np.real(matrix) / safe[..., :, None] / safe[..., None, :]))
+    if not unequal and lowest <= 0.0:
+        what = f"it is not positive definite: the lowest eigenvalue of its scaled form is {lowest:.3g}"
+        yield Finding(where, what, "Check signs and units of its entries; a locked freedom is Restricted, not zero")
 
 
 def negative_part(matrix: Array, lengths: Array) -> Array:

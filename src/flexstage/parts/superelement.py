@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.storage.digest import DOCUMENT_ONLY, Description
 from flexstage.base.units.quantity import DIRECTION, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, RATIO, Bound
-from flexstage.parts.body import Inertia
+from flexstage.parts.body import Inertia, across
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.shape import Elastic
 
@@ -93,11 +93,9 @@ class Superelement(Elastic):
     @property
     def mirrored(self) -> Superelement:
         """Its mirror image across its x-z plane: ports and what is stated of its mass stand on the other side."""
-        ports = {
-            name: replace(port, at=_across(port.at), along=_across(port.along), up=_across(port.up)) for name, port in self.ports.items()
-        }
-        centre = None if self.centre is None else _across(self.centre)
-        inertia = None if self.inertia is None else replace(self.inertia, xy=-self.inertia.xy, yz=-self.inertia.yz)
+        ports = {name: replace(port, at=across(port.at), along=across(port.along), up=across(port.up)) for name, port in self.ports.items()}
+        centre = None if self.centre is None else across(self.centre)
+        inertia = None if self.inertia is None else self.inertia.mirrored
         return replace(self, ports=Table(ports), centre=centre, inertia=inertia, reflected=not self.reflected)
 
     @property
@@ -109,7 +107,3 @@ class Superelement(Elastic):
     def order(self) -> tuple[str, ...]:
         """The names of its ports in the order of their rows in the file."""
         return tuple(sorted(self.ports, key=lambda name: self.ports[name].row))
-
-
-def _across(vector: Vector) -> Vector:
-    return (vector[0], -vector[1], vector[2])

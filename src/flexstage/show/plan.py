@@ -78,7 +78,7 @@ def plan_figure(mechanism: Mechanism, data: StageData) -> Any:
         axes = fit(figure.add_axes((0.0, 0.0, 1.0, 1.0)), low, high)
         _outlines(axes, data)
         _axes_of_symmetry(axes, reach)
-        _rings(axes, rings(mechanism), [1e3 * np.array(label.point[:2]) for label in data.labels])
+        _rings(axes, rings(mechanism))
         _rectangles(axes, mechanism, middle)
         write(axes, data.labels, view(Side.TOP))
         _sizes(axes, data, reach)
@@ -143,26 +143,17 @@ def _axes_of_symmetry(axes: Any, reach: Array) -> None:
     axes.text(0.0, 1.07 * reach[1], "y", ha="center", va="bottom", fontsize=8, color=MUTED, style="italic")
 
 
-def _rings(axes: Any, found: tuple[Ring, ...], taken: list[Array]) -> None:
+def _rings(axes: Any, found: tuple[Ring, ...]) -> None:
     """Circles with their radii, and a ray to each first copy with its position angle; `taken` are places of other texts."""
     circle = np.linspace(0.0, 2.0 * np.pi, 121)
     for angle in sorted({round(ring.first % 360.0, 6) for ring in found} - {0.0}):
         _ray(axes, np.deg2rad(angle), max(ring.radius for ring in found if round(ring.first % 360.0, 6) == angle))
     for radius in sorted({round(ring.radius, 6) for ring in found}):
         axes.plot(radius * np.cos(circle), radius * np.sin(circle), color=MUTED, linewidth=0.5, linestyle=(0, (8, 3, 1.5, 3)))
-        place = _free_place(radius, taken)
-        taken = [*taken, place]
-        axes.text(*place, f"R {number(radius)}", ha="center", va="center", fontsize=7, bbox=_PLATE)
-
-
-def _free_place(radius: float, taken: list[Array]) -> Array:
-    """The point of a circle, off the axes, that is farthest from what is written already."""
-    angles = np.deg2rad(np.arange(2.5, 360.0, 5.0))
-    points = radius * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-    room = np.abs(points).min(axis=1)
-    if taken:
-        room = np.minimum(1.5 * room, np.sqrt(np.sum((points[:, None] - np.array(taken)[None]) ** 2, axis=-1)).min(axis=1))
-    return points[int(np.argmax(np.round(room, 6)))]
+        between = np.deg2rad(next(ring.first + 0.5 * ring.step for ring in found if round(ring.radius, 6) == radius))
+        axes.text(
+            radius * np.cos(between), radius * np.sin(between), f"R {number(radius)}", ha="center", va="center", fontsize=7, bbox=_PLATE
+        )
 
 
 def _ray(axes: Any, angle: float, radius: float) -> None:

@@ -58,14 +58,14 @@ class Boxes:
         return Boxes(self.turns[which], self.centres[which], self.halves[which])
 
 
-def frustum(here: float, there: float, one: Array, other: Array) -> Convex:
+def frustum(low: float, high: float, one: Array, other: Array) -> Convex:
     """Build the hull of two polygons (n, 2) in the planes x = `here` and x = `there`, counter-clockwise in (y, z) with parallel sides.
 
     >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     >>> frustum(0.0, 2.0, square, square).points.max(axis=0).tolist()
     [2.0, 1.0, 1.0]
     """
-    first, last = (np.column_stack([np.full(len(section), station), section]) for station, section in ((here, one), (there, other)))
+    first, last = (np.column_stack([np.full(len(section), station), section]) for station, section in ((low, one), (high, other)))
     wide = first if np.ptp(first) >= np.ptp(last) else last
     rim, slant = np.roll(wide, -1, axis=0) - wide, last - first
     sides = np.cross(rim, slant)
@@ -93,8 +93,8 @@ def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
     lengths = np.linalg.norm(crossed, axis=1)
     apart = lengths > _PARALLEL
     directions = np.concatenate([first.normals, second.normals, crossed[apart] / lengths[apart, None]])
-    here, there = first.points @ directions.T, second.points @ directions.T
-    ahead, behind = there.min(axis=0) - here.max(axis=0), here.min(axis=0) - there.max(axis=0)
+    first_extent, second_extent = first.points @ directions.T, second.points @ directions.T
+    ahead, behind = second_extent.min(axis=0) - first_extent.max(axis=0), first_extent.min(axis=0) - second_extent.max(axis=0)
     gaps = np.maximum(ahead, behind)
     widest = int(np.argmax(gaps))
     unit = directions[widest] * (1.0 if ahead[widest] >= behind[widest] else -1.0)
@@ -108,8 +108,8 @@ def polytope_corners(normals: Array, offsets: Array) -> Array:
     >>> len(polytope_corners(np.concatenate([np.eye(3), -np.eye(3)]), np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])))
     8
     """
-    wanted = np.column_stack([normals, np.linalg.norm(normals, axis=1)])
-    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], A_ub=wanted, b_ub=offsets, bounds=(None, None))
+    planes = np.column_stack([normals, np.linalg.norm(normals, axis=1)])
+    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], A_ub=planes, b_ub=offsets, bounds=(None, None))
     if ball.x is None or ball.x[3] <= 0.0:
         return np.zeros((0, 3))
     return scipy.spatial.HalfspaceIntersection(np.column_stack([normals, -offsets]), ball.x[:3]).intersections
@@ -134,9 +134,9 @@ def distance(first: Array, second: Array) -> float:
         weights, _ = scipy.optimize.nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]), maxiter=100 * matrix.shape[1])
     except RuntimeError:  # corners so close that rounding makes the selection cycle: the distance of two corners is as good
         return float(np.min(np.linalg.norm(between, axis=1)))
-    rest = matrix @ weights - np.array([0.0, 0.0, 0.0, 1.0])
-    size = float(np.linalg.norm(rest[:3]))
-    return 0.0 if -rest[3] <= 1e-15 or size <= 1e-15 else scale * float(-rest[3]) / size
+    residual = matrix @ weights - np.array([0.0, 0.0, 0.0, 1.0])
+    size = float(np.linalg.norm(residual[:3]))
+    return 0.0 if -residual[3] <= 1e-15 or size <= 1e-15 else scale * float(-residual[3]) / size
 
 
 def separations(ones: Boxes, others: Boxes) -> Array:

@@ -18,6 +18,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.freedom import ALL
+from flexstage.parts.profile import single
 from flexstage.spatial.frame import COMPONENTS, MOTION
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -36,7 +37,7 @@ class Shares(dict[str, Array]):
         pivot.rz  0.25
         foot.rz   0.01
         """
-        first = {name: float(np.ravel(np.real(share))[0]) for name, share in self.items()}
+        first = {name: single(share) for name, share in self.items()}
         ranked = sorted(first, key=lambda name: -abs(first[name]))
         shown = [name for name in ranked if abs(first[name]) > NOISE * abs(first[ranked[0]])]
         width = max(map(len, shown), default=0)

@@ -25,6 +25,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.actuator import ThrustActuator
+from flexstage.parts.profile import single
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, Frame, twist_transform
 
@@ -180,7 +181,7 @@ def _sizes(limits: list[list[tuple[str, Number]]]) -> list[float]:
 
     Two on one line then reach their limits together.
     """
-    return [min((float(np.real(np.ravel(value)[0])) for _, value in own), default=1.0) ** 0.5 for own in limits]
+    return [min((single(value) for _, value in own), default=1.0) ** 0.5 for own in limits]
 
 
 def _inverse(gain: Array, sizes: list[float]) -> tuple[Array, tuple[bool, ...]]:

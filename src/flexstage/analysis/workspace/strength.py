@@ -23,6 +23,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
+from flexstage.parts.profile import single
 
 
 class HingeStress(Result):
@@ -153,7 +154,7 @@ def stress_shares(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
 def _governing(material: Material | None) -> str:
     """Which limit of stress is the least on the first design; empty where none is stated."""
     limits = {} if material is None else material.limits
-    return min(limits, key=lambda name: float(np.real(np.ravel(limits[name])[0])), default="")
+    return min(limits, key=lambda name: single(limits[name]), default="")
 
 
 def _has_section(link: PlacedLink) -> bool:

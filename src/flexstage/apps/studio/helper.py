@@ -90,10 +90,6 @@ class Helper:
         self._waiting.put_nowait(_Task(urgency, next(self._numbers), call, answer, wanted, heard))
         return await answer
 
-    async def do(self, *call: Any, urgency: Urgency) -> None:
-        """The same for what nobody waits for, and what may be refused."""
-        await self.ask(*call, urgency=urgency)
-
     def start_anew(self) -> None:
         """Give up what it does: the process ends, and is started again for the next task."""
         if self._worker is not None and self._now is not None:

@@ -16,7 +16,7 @@ from flexstage.analysis.caveats import part_warnings
 from flexstage.analysis.workspace.strength import sized_links
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.wrench import dead_wrenches
-from flexstage.apps.studio.design.reading import address_of, design, link_lines, problems_of
+from flexstage.apps.studio.design.reading import address_of, design, finite, link_lines, problems_of
 from flexstage.apps.studio.protocol import (
     Card,
     Clash,
@@ -32,7 +32,7 @@ from flexstage.apps.studio.protocol import (
     Slopes,
 )
 from flexstage.apps.studio.results import bench, judged, matrix
-from flexstage.base.finding import DesignError, refuse, suggest_nearest
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import NOISE, ratio_units
 from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.number import Array, first_design
@@ -136,7 +136,7 @@ def motion(text: str, file: str, to: int, revision: int) -> Motion:
         attempt.of("gauges", lambda: matrix(static_gain(model, gauges, inputs))) if gauges else None,
         None if bearing is None else matrix(bearing.per_input),
         {} if bearing is None else dict(zip(bearing.links, bearing.at(np.zeros(len(inputs))).tolist(), strict=True)),
-        {} if bearing is None else {name: _finite(limit) for name, limit in zip(bearing.links, bearing.limits, strict=True)},
+        {} if bearing is None else {name: finite(limit) for name, limit in zip(bearing.links, bearing.limits, strict=True)},
         attempt.missing,
     )
 
@@ -151,7 +151,7 @@ def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
     values = np.array([inputs.get(name, 0.0) for name in names])
     twist = static_gain(known.model, _PLATFORM, names).values @ values
     readings = static_gain(known.model, gauges, names).values @ values if gauges else np.zeros(0)
-    bearing = _bearing_or_none(text, file)
+    bearing = Attempts().of("stress", lambda: _bearing(text, file))
     found = {} if bearing is None else dict(zip(bearing.links, bearing.at(values).tolist(), strict=True))
     beyond = dict(_beyond_strokes(known, dict(zip(names, values.tolist(), strict=True))))
     beyond |= dict(_beyond_gauges(known, dict(zip(gauges, readings.tolist(), strict=True))))
@@ -228,7 +228,7 @@ def _stress(known: Bench, name: str) -> tuple[float | None, float | None, float 
     if name not in found.links:
         raise refuse(name, "its stress is not known: it has no section to check", "Stacks have limits of load instead")
     index = found.links.index(name)
-    return tuple(_finite(float(np.ravel(each)[index])) for each in (found.peak, found.allowed, found.safety))  # type: ignore[return-value]
+    return tuple(finite(np.ravel(each)[index]) for each in (found.peak, found.allowed, found.safety))  # type: ignore[return-value]
 
 
 def _shares(known: Bench, name: str) -> dict[str, float]:
@@ -245,10 +245,6 @@ def _facts(link: PlacedLink | PlacedSuperelement) -> Iterator[Fact]:
         yield Fact(name, said)
     if isinstance(link, PlacedLink) and link.material is not None:
         yield Fact("material", getattr(inner(link.part), "material", ""))
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 class Bearing:
@@ -298,20 +294,13 @@ class Bearing:
 
     def _limit(self, name: str) -> float:
         material = self._known[name].material
-        limit = None if material is None else material.limit
-        return np.nan if limit is None else float(np.ravel(np.real(limit))[0])
+        limit = None if material is None else finite(material.limit)
+        return np.nan if limit is None else limit
 
 
 @SESSION.keep(2)
 def _bearing(text: str, file: str) -> Bearing:
     return Bearing(bench(text, file))
-
-
-def _bearing_or_none(text: str, file: str) -> Bearing | None:
-    try:
-        return _bearing(text, file)
-    except DesignError:
-        return None
 
 
 def _inputs(known: Bench) -> Matrix:
@@ -339,7 +328,7 @@ def _beyond_strokes(known: Bench, values: Mapping[str, float]) -> Iterator[tuple
 def _beyond_gauges(known: Bench, readings: Mapping[str, float]) -> Iterator[tuple[str, str]]:
     for name, reading in readings.items():
         gauge = known.assembly.gauges[name]
-        half = 0.5 * float(np.ravel(np.real(gauge.gauge.range))[0])
+        half = finite(0.5 * np.asarray(gauge.gauge.range)) or np.inf
         if abs(reading) > half:
             yield name, f"it reads {format_value(reading, gauge.unit)}, its range ends at {format_value(half, gauge.unit)}"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, single_axis
-from flexstage.apps.studio.design.reading import design, problems_of
+from flexstage.apps.studio.design.reading import design, finite, problems_of
 from flexstage.apps.studio.protocol import (
     Curve,
     Figure,
@@ -167,8 +168,8 @@ def drawn(text: str, file: str) -> StageData:
     from flexstage.show.viewer.data import stage_data
 
     known = bench(text, file)
-    model, kinematics, felt = (_known(known, each) for each in ("model", "kinematics", "felt"))
-    weighed, found = (None if felt is None else _known(felt, each) for each in ("model", "modes"))
+    model, kinematics, felt = (Attempts().of(each, partial(getattr, known, each)) for each in ("model", "kinematics", "felt"))
+    weighed, found = (None if felt is None else Attempts().of(each, partial(getattr, felt, each)) for each in ("model", "modes"))
     stands = _still(text, file)
     return stage_data(known.mechanism, model=model, weighed=weighed, kinematics=kinematics, found=found, text=text, still=stands)
 
@@ -185,13 +186,6 @@ def _loading(known: Bench) -> str:
     return known.loaded.text if known.felt is not known and known.loaded is not None else ""
 
 
-def _known(known: Bench, name: str) -> Any:
-    try:
-        return getattr(known, name)
-    except DesignError:
-        return None
-
-
 @SESSION.keep(8)
 def judged(text: str, file: str) -> tuple[Verdict, ...]:
     """The verdicts on a design. Raises `DesignError` where its text has errors."""
@@ -200,11 +194,7 @@ def judged(text: str, file: str) -> tuple[Verdict, ...]:
 
 
 def _stored_verdicts(stored: str, file: str) -> tuple[Verdict, ...]:
-    """The verdicts on the file's design; none where the file has errors."""
-    try:
-        return judged(stored, file)
-    except DesignError:
-        return ()
+    return Attempts().of("verdicts", lambda: judged(stored, file)) or ()
 
 
 @SESSION.keep(8)
@@ -331,7 +321,7 @@ def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judg
     asked = verdict.requirement
     fitting = display_unit_of(asked.quantity.si, abs(asked.limit))
     form = fitting if preferred_unit(asked.quantity.si).factor != 1.0 else field_unit(asked.quantity)
-    value = _single(verdict.value)
+    value = finite(verdict.value)
     return Judgement(
         asked.key,
         asked.text,
@@ -341,13 +331,9 @@ def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judg
         1.0 / form.factor,
         asked.limit,
         value,
-        _single(old.value),
+        finite(old.value),
         None if value is None else float(verdict.margin),
         bool(verdict.passed),
         verdict.reason,
         line_of(f"requirements.{asked.text}", lines) or line_of(f"requirements.{asked.key}", lines),
     )
-
-
-def _single(value: Array | None) -> float | None:
-    return None if value is None else float(np.real(value))

@@ -49,10 +49,6 @@ Tell = Callable[[say.Said], None]
 class RefusedError(Exception):
     """What a process refused, with its problems."""
 
-    def __init__(self, problems: tuple[say.Problem, ...]) -> None:
-        super().__init__(problems)
-        self.problems = problems
-
 
 class Session:
     """One design for all pages. `tell` says something to all of them."""
@@ -126,7 +122,7 @@ class Session:
         try:
             told = await self._answers[type(request)](self, request, page, tell)
         except RefusedError as error:
-            tell(say.Refusal(request.id, error.problems))
+            tell(say.Refusal(request.id, error.args[0]))
         except DesignError as error:
             tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=isinstance(request, say.Edit | say.Save)))
         except Exception as error:  # noqa: BLE001 (one request that fails is no reason to lose the others)

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.dynamics.pairing import Moving, Pair, pair_modes
 from flexstage.analysis.dynamics.solid_modes import FeaModes
+from flexstage.apps.studio.design.reading import finite
 from flexstage.apps.studio.protocol import Fact, SolidMode, SolidModes
 from flexstage.apps.studio.results import bench, drawn
 from flexstage.base.finding import DesignError
@@ -48,7 +49,7 @@ def _modes(text: str, file: str, found: FeaModes, pairs: dict[int, Pair]) -> Ite
         yield SolidMode(
             index + 1,
             frequency,
-            None if error is None or not np.isfinite(error) else float(error),
+            finite(error),
             found.modes.names[index],
             None if alike is None else alike.index + 1,
             None if alike is None else alike.frequency,

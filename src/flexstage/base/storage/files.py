@@ -14,8 +14,8 @@ import os
 import signal
 import stat
 import threading
-from collections.abc import Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -98,11 +98,11 @@ class Hdf:
         lengths = [max(0, min(stop, length) - max(start, 0)) for (start, stop), length in zip(spans, array.shape, strict=False)]
         needed = math.prod((*lengths, *array.shape[len(lengths) :])) * array.size
         require_memory(f"{self.path}: {name}", "its numbers", _COPIES * needed, _advise_less)
-        return _ask(_Question("array", self.path, name, tuple(spans), column), needed)
+        return _ask(_one_array, self.path, needed, name, tuple(spans), column)
 
     def texts(self, name: str, column: str = "") -> tuple[str, ...]:
         """An array of texts, or one column of a table."""
-        return tuple(_ask(_Question("texts", self.path, name, column=column), self.path.stat().st_size))
+        return tuple(_ask(_some_texts, self.path, self.path.stat().st_size, name, column))
 
 
 def hdf(path: Path) -> Hdf:
@@ -118,7 +118,7 @@ def hdf(path: Path) -> Hdf:
     ({'fs': 50.0}, [2.0])
     """
     require_regular(path)
-    return Hdf(path, *_ask(_Question("look", path), path.stat().st_size))
+    return Hdf(path, *_ask(_look, path, path.stat().st_size))
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
     require_regular(path)
     size = path.stat().st_size
     require_memory(str(path), "its numbers", _COPIES * size, _advise_less)
-    return _ask(_Question("mat", path), size)
+    return _ask(_mat, path, size)
 
 
 def _advise_less(there: float) -> str:
@@ -180,17 +180,6 @@ def new_hdf(place: Path, size: int) -> Generator[Any]:
             raise OSError(str(error)) from None
 
 
-@dataclass(frozen=True)
-class _Question:
-    """What is asked about a file: for one of the tasks below, spans (start, stop) of an array, a column of a table."""
-
-    task: str
-    path: Path
-    name: str = ""
-    spans: tuple[tuple[int, int], ...] = ()
-    column: str = ""
-
-
 class Child:
     """The worker of this process that answers questions about files; started by the first one, and anew after one that ended it."""
 
@@ -199,14 +188,14 @@ class Child:
         self._owner = 0
         self._lock = threading.Lock()
 
-    def ask(self, question: _Question, seconds: float, memory: float) -> Any:
+    def ask(self, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
         """The answer; raises as `Worker.call` does, and the next question finds a new worker then."""
         with self._lock:
             known = self._worker
             if known is None or self._owner != os.getpid() or known.process.poll() is not None:
                 known = self._worker = Worker(_answer)
                 self._owner = os.getpid()
-            return known.call(question, seconds, memory)
+            return known.call(read, path, arguments, seconds, memory)
 
     def code(self) -> int:
         """How the last worker ended."""
@@ -223,11 +212,11 @@ CHILD = Child()
 atexit.register(CHILD.end)
 
 
-def _ask(question: _Question, size: int) -> Any:
+def _ask(read: Callable[..., Any], asked: Path, size: int, *arguments: Any) -> Any:
     """What the worker says about a file, at most `size` bytes of numbers; raises `DesignError` with what keeps it from being read."""
-    path, seconds = str(question.path), PATIENCE + _SLOW * size
+    path, seconds = str(asked), PATIENCE + _SLOW * size
     try:
-        answer = CHILD.ask(replace(question, path=question.path.absolute()), seconds, MEMORY + _COPIES * size)
+        answer = CHILD.ask(read, asked.absolute(), arguments, seconds, MEMORY + _COPIES * size)
     except EOFError:
         raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
     if isinstance(answer, _WrongError):
@@ -250,28 +239,28 @@ class _WrongError(Exception):
     """What is wrong: where in the file, what, and what to do."""
 
 
-def _answer(_line: Line, question: _Question, seconds: float, memory: float) -> Any:
+def _answer(_line: Line, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
     """The answer to a question, or what is wrong: damaged files make the libraries stumble in ways of all kinds."""
     limit_processor(seconds)
     limit_memory(memory)
     try:
-        return _TASKS[question.task](question)
+        return read(path, *arguments)
     except MemoryError:
         return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts")
     except Exception as error:  # noqa: BLE001
-        return _answer_to_error(question, error)
+        return _answer_to_error(error, path, is_mat=read is _mat)
 
 
 def _error_text(error: Exception) -> str:
     return " ".join(str(getattr(error, "strerror", None) or error or type(error).__name__).split())[:300]
 
 
-def _answer_to_error(question: _Question, error: Exception) -> _WrongError:
+def _answer_to_error(error: Exception, path: Path, *, is_mat: bool) -> _WrongError:
     if isinstance(error, _WrongError):
         return error
     said = _error_text(error)
-    if question.task == "mat":
-        size = question.path.stat().st_size
+    if is_mat:
+        size = path.stat().st_size
         advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
         return _WrongError("", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
     if "truncated file" in said:
@@ -284,16 +273,16 @@ _ELSEWHERE = "its data stand in another file", "Only the file that is named is r
 
 
 @contextlib.contextmanager
-def _open(question: _Question) -> Generator[Any]:
+def _open(path: Path) -> Generator[Any]:
     import h5py
 
-    with h5py.File(question.path, "r", locking=False) as file:
+    with h5py.File(path, "r", locking=False) as file:
         yield file
 
 
-def _look(question: _Question) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArray]]:
+def _look(path: Path) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArray]]:
     """All groups and arrays of a file, each once."""
-    with _open(question) as file:
+    with _open(path) as file:
         groups: dict[str, dict[str, Attribute]] = {}
         found: dict[str, HdfArray] = {}
         waiting, seen = [("", file)], set[Any]()
@@ -377,10 +366,10 @@ def _text(value: Any) -> str:
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
-def _one_array(question: _Question) -> Array:
-    with _open(question) as file:
-        values = file[question.name][tuple(slice(*span) for span in question.spans)]
-    values = np.asarray(values[question.column] if question.column else values)
+def _one_array(path: Path, name: str, spans: tuple[tuple[int, int], ...], column: str) -> Array:
+    with _open(path) as file:
+        values = file[name][tuple(slice(*span) for span in spans)]
+    values = np.asarray(values[column] if column else values)
     names = values.dtype.names
     if names in _COMPLEX_FIELDS:
         whole = np.empty(values.shape, dtype=complex)
@@ -395,14 +384,14 @@ def _numbers(values: Array) -> Array:
     return values
 
 
-def _some_texts(question: _Question) -> list[str]:
-    with _open(question) as file:
-        values = file[question.name][()]
-    return _texts(values[question.column] if question.column else values)
+def _some_texts(path: Path, name: str, column: str) -> list[str]:
+    with _open(path) as file:
+        values = file[name][()]
+    return _texts(values[column] if column else values)
 
 
-def _mat(question: _Question) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
-    content = scipy.io.loadmat(question.path, appendmat=False)
+def _mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
+    content = scipy.io.loadmat(path, appendmat=False)
     flat = [each for name, value in content.items() if not name.startswith("__") for each in _flatten(name, value)]
     return [(name, value if isinstance(value, (tuple, Opaque)) else _numbers(value)) for name, value in flat]
 
@@ -431,6 +420,3 @@ def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
             yield name, tuple(str(each.ravel()[0]).rstrip() if each.size else "" for each in members)
     elif array.dtype.kind in "fiubc":
         yield name, array
-
-
-_TASKS = {"look": _look, "array": _one_array, "texts": _some_texts, "mat": _mat}

@@ -7,11 +7,13 @@ Values are floats, complex numbers or arrays; dimensions go along with them, the
 from __future__ import annotations
 
 import functools
+import operator
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -63,110 +65,59 @@ class UnknownAmountError(Exception):
     """An amount that an expression refers to is not known, and somebody else says why."""
 
 
+@dataclass(frozen=True, eq=False)
 class Expression:
-    """An arithmetic expression."""
+    """An arithmetic expression: the named numbers it refers to, and its amount; a `literal` is one number with its unit.
 
-    names: frozenset[str] = frozenset()
-    """The named numbers that it refers to."""
+    `amount` raises `ExpressionError` for unlike dimensions, names there are none of, and values that no number holds.
+    """
 
-    def amount(self, scope: Scope) -> Amount:
-        """Its amount; raises `ExpressionError` for unlike dimensions, names there are none of, and values that no number holds."""
-        raise NotImplementedError
-
-
-@dataclass(frozen=True, eq=False)
-class Literal(Expression):
-    """A number with its unit."""
-
-    known: Amount
-
-    def amount(self, scope: Scope) -> Amount:  # noqa: ARG002 (a number refers to nothing)
-        """The number itself."""
-        return self.known
+    names: frozenset[str]
+    amount: Callable[[Scope], Amount]
+    literal: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class Name(Expression):
-    """A named number."""
-
-    name: str
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", frozenset([self.name]))
-
-    def amount(self, scope: Scope) -> Amount:
-        """The number of that name."""
-        if self.name not in scope:
-            raise ExpressionError(f'there is no number "{self.name}"', _name_advice(self.name, scope))
-        found = scope[self.name]
-        if found is None:
-            raise UnknownAmountError(self.name)
-        return found
+def _named(name: str, scope: Scope) -> Amount:
+    if name not in scope:
+        raise ExpressionError(f'there is no number "{name}"', _name_advice(name, scope))
+    found = scope[name]
+    if found is None:
+        raise UnknownAmountError(name)
+    return found
 
 
-@dataclass(frozen=True, eq=False)
-class _Negative(Expression):
-    inner: Expression
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", self.inner.names)
-
-    def amount(self, scope: Scope) -> Amount:
-        inner = self.inner.amount(scope)
-        return Amount(-inner.value, inner.dimension)
+def _negative(inner: Expression, scope: Scope) -> Amount:
+    found = inner.amount(scope)
+    return Amount(-found.value, found.dimension)
 
 
-@dataclass(frozen=True, eq=False)
-class _Pair(Expression):
-    sign: str
-    left: Expression
-    right: Expression
-    text: str
-
-    _VALUES: ClassVar[Mapping[str, Callable[[Any, Any], Any]]] = {
-        "+": lambda left, right: left + right,
-        "-": lambda left, right: left - right,
-        "*": lambda left, right: left * right,
-        "/": lambda left, right: left / right,
-    }
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", self.left.names | self.right.names)
-
-    def amount(self, scope: Scope) -> Amount:
-        left, right = self.left.amount(scope), self.right.amount(scope)
-        if self.sign == "/" and np.any(np.equal(right.value, 0.0)):
-            raise ExpressionError(f'"{self.text}" divides by nothing: what stands below is 0', "Check the number that is 0")
-        value = self._VALUES[self.sign](left.value, right.value)
-        if self.sign in "*/":
-            return Amount(value, left.dimension.times(right.dimension, Fraction(1 if self.sign == "*" else -1)))
-        if left.dimension.powers != right.dimension.powers:
-            word = "adds" if self.sign == "+" else "takes"
-            joint = "and" if self.sign == "+" else "less"
-            what = f'"{self.text}" {word} unlike quantities: {left.noun()} {joint} {right.noun()}'
-            raise ExpressionError(what, "Give both the same unit")
-        return Amount(value, left.dimension)
+_VALUES: Mapping[str, Callable[[Any, Any], Any]] = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
 
 
-@dataclass(frozen=True, eq=False)
-class _Call(Expression):
-    function: str
-    inner: Expression
-    text: str
+def _pair(sign: str, first: Expression, second: Expression, text: str, scope: Scope) -> Amount:
+    left, right = first.amount(scope), second.amount(scope)
+    if sign == "/" and np.any(np.equal(right.value, 0.0)):
+        raise ExpressionError(f'"{text}" divides by nothing: what stands below is 0', "Check the number that is 0")
+    value = _VALUES[sign](left.value, right.value)
+    if sign in "*/":
+        return Amount(value, left.dimension.times(right.dimension, Fraction(1 if sign == "*" else -1)))
+    if left.dimension.powers != right.dimension.powers:
+        word, joint = ("adds", "and") if sign == "+" else ("takes", "less")
+        what = f'"{text}" {word} unlike quantities: {left.noun()} {joint} {right.noun()}'
+        raise ExpressionError(what, "Give both the same unit")
+    return Amount(value, left.dimension)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", self.inner.names)
 
-    def amount(self, scope: Scope) -> Amount:
-        inner = self.inner.amount(scope)
-        if self.function == "sqrt":
-            if np.any(np.real(inner.value) < 0.0):
-                raise ExpressionError(f'"{self.text}" is the root of a number below 0', "Check its sign")
-            return Amount(freeze(np.sqrt(inner.value)), _ONE.times(inner.dimension, Fraction(1, 2)))
-        if inner.dimension.powers != ANGLE_POWERS:
-            what = f'"{self.text}" needs an angle and has {inner.noun()}'
-            raise ExpressionError(what, "Write the angle with its unit, for example sin(30 deg)")
-        return Amount(freeze(FUNCTIONS[self.function](inner.value)), _ONE)
+def _call(function: str, argument: Expression, text: str, scope: Scope) -> Amount:
+    inner = argument.amount(scope)
+    if function == "sqrt":
+        if np.any(np.real(inner.value) < 0.0):
+            raise ExpressionError(f'"{text}" is the root of a number below 0', "Check its sign")
+        return Amount(freeze(np.sqrt(inner.value)), _ONE.times(inner.dimension, Fraction(1, 2)))
+    if inner.dimension.powers != ANGLE_POWERS:
+        what = f'"{text}" needs an angle and has {inner.noun()}'
+        raise ExpressionError(what, "Write the angle with its unit, for example sin(30 deg)")
+    return Amount(freeze(FUNCTIONS[function](inner.value)), _ONE)
 
 
 _ONE = Dimension(Fraction(1))
@@ -232,18 +183,22 @@ class _Parser:
         left = inner()
         while sign := self.sign(signs):
             right = inner()
-            left = _Pair(sign, left, right, self.text[start : self.at].strip())
+            left = Expression(left.names | right.names, partial(_pair, sign, left, right, self.text[start : self.at].strip()))
         return left
 
     def signed(self) -> Expression:
-        return _Negative(self.deeper(self.signed)) if self.sign("-") else self.atom()
+        if not self.sign("-"):
+            return self.atom()
+        inner = self.deeper(self.signed)
+        return Expression(inner.names, partial(_negative, inner))
 
     def atom(self) -> Expression:
         start = self.at
         if number := self.match(_NUMBER):
             end = unit_end(self.text, self.at)
             unit, self.at = self.text[self.at : end].strip(), end
-            return Literal(_amount(number, unit))
+            known = _amount(number, unit)
+            return Expression(frozenset(), lambda _scope: known, literal=True)
         if self.sign("("):
             return self.inside()
         name = self.match(_NAME)
@@ -252,8 +207,9 @@ class _Parser:
         if self.sign("("):
             if name not in FUNCTIONS:
                 raise ExpressionError(f'there is no function "{name}"', f"There are {', '.join(FUNCTIONS)}")
-            return _Call(name, self.inside(), self.text[start : self.at].strip())
-        return Name(name)
+            inner = self.inside()
+            return Expression(inner.names, partial(_call, name, inner, self.text[start : self.at].strip()))
+        return Expression(frozenset([name]), partial(_named, name))
 
     def inside(self) -> Expression:
         found = self.deeper(self.sum)

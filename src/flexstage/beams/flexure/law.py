@@ -102,9 +102,9 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
     bend = slice(size - resolution.bending, size)
     form[size:, bend], form[bend, size:] = pull, pull.T
     blank, heated = _natural(part, material)
-    rest = blank * form[:, size - resolution.bending]
-    rest[size - resolution.bending] += factor * (1.0 + poisson) * heated
-    rest[size:] += factor * (1.0 + poisson) * heated * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, 0]
+    thermal_gradient = blank * form[:, size - resolution.bending]
+    thermal_gradient[size - resolution.bending] += factor * (1.0 + poisson) * heated
+    thermal_gradient[size:] += factor * (1.0 + poisson) * heated * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, 0]
     modes, inner = _tables([twist, np.eye(resolution.across, rule.size), np.eye(resolution.bending, rule.size)], rule.size)
     ratio = width * width / (thickness * length)
     return FlexureLaw(
@@ -120,7 +120,7 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
         inertia=_spread(_inertia(section, float(material.density)), rule.size),
         half=0.5 * np.stack([thickness, width]),
         natural=np.array([blank + heated, heated]),
-        rest=rest,
+        rest=thermal_gradient,
     )
 
 
@@ -200,11 +200,11 @@ def _leaf_twist(
     if warps:
         return np.eye(count, resolution.points), torsion * _squares(count)
     warping = float(material.modulus) * (0.0 if section.warping is None else section.warping) / (rigidity * length * length)
-    found = orthonormal(held_modes(count, fine.points, 0.5 * np.sqrt(torsion / warping)), fine.weights)
+    modes = orthonormal(held_modes(count, fine.points, 0.5 * np.sqrt(torsion / warping)), fine.weights)
     plate = 1.0 / (1.0 - float(material.contraction) ** 2)
-    curled = curling_energy(float(section.width / length), float(material.contraction), found)
-    form = torsion * _product(found.values, fine.weights) + plate * (warping * _product(found.slopes, fine.weights) - curled)
-    return project(found.values, fine.points, fine.weights, resolution.points), form
+    curled = curling_energy(float(section.width / length), float(material.contraction), modes)
+    form = torsion * _product(modes.values, fine.weights) + plate * (warping * _product(modes.slopes, fine.weights) - curled)
+    return project(modes.values, fine.points, fine.weights, resolution.points), form
 
 
 def _product(values: Array, weights: Array) -> Array:
@@ -220,12 +220,12 @@ def _tables(coefficients: list[Array], size: int) -> tuple[Array, Array]:
     """Curvatures (n, 3, k) at the points and (3 (n + 1), 3, k) at the rotation steps, of modes about x, y and z."""
     rule = gauss(size)
     total, done = sum(len(each) for each in coefficients), 0
-    found = np.zeros((size + len(rule.inner), 3, total))
+    curvatures = np.zeros((size + len(rule.inner), 3, total))
     at = polynomials(size, np.concatenate([rule.points, rule.inner]))
     for axis, each in enumerate(coefficients):
-        found[:, axis, done : done + len(each)] = (each @ at).T
+        curvatures[:, axis, done : done + len(each)] = (each @ at).T
         done += len(each)
-    return found[:size], found[size:]
+    return curvatures[:size], curvatures[size:]
 
 
 def _blocks(*blocks: Array) -> Array:

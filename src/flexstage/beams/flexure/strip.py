@@ -104,10 +104,10 @@ def fields(width: float, thickness: Number, poisson: Number, size: int, loads: t
     along = amplitudes @ value
     coupling = along * weights @ moments.T
     projected = coupling * (2.0 * np.arange(size) + 1.0) @ polynomials(size, gauss(size).points)
-    found = Fields(answer.T @ form @ answer, projected, coupling)
-    for each in (found.form, found.values, found.coupling):
+    modes = Fields(answer.T @ form @ answer, projected, coupling)
+    for each in (modes.form, modes.values, modes.coupling):
         each.flags.writeable = False
-    return found
+    return modes
 
 
 def _solve(form: Array, right: Array) -> Array:

@@ -52,8 +52,8 @@ def orthonormal(modes: Modes, weights: Array) -> Modes:
     In short wide leaves the functions of `held_modes` are nearly dependent: amplitudes without effect would amplify rounding.
 
     >>> rule = gauss(20)
-    >>> found = orthonormal(held_modes(3, rule.points, np.array(0.1)), rule.weights)
-    >>> bool(np.allclose(found.values * rule.weights @ found.values.T, np.eye(3)))
+    >>> result = orthonormal(held_modes(3, rule.points, np.array(0.1)), rule.weights)
+    >>> bool(np.allclose(result.values * rule.weights @ result.values.T, np.eye(3)))
     True
     """
     root = np.linalg.qr((modes.values * np.sqrt(weights)).T)[1]

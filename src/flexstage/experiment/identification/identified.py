@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, TypeAlias
+from typing import Annotated, Any, ClassVar, TypeAlias
 
 import numpy as np
 
@@ -97,22 +97,19 @@ class Identified(InNotebook):
     @property
     def modes(self) -> Annotated[tuple[IdentifiedMode, ...], VIEW]:
         """The modes one by one, ascending."""
-        return tuple(self._mode(index) for index in range(len(self.frequencies)))
-
-    def _mode(self, index: int) -> IdentifiedMode:
-        (low, high), (least, most) = self.frequency_intervals[index].tolist(), self.damping_intervals[index].tolist()
-        return IdentifiedMode(
-            number=index + 1,
-            frequency=float(self.frequencies[index]),
-            frequency_interval=(low, high),
-            damping=float(self.damping[index]),
-            damping_interval=(least, most),
-            widening=float(self.widening[index]),
-            shape=_by_channel(self.outputs, self.shapes[:, index]),
-            participation=_by_channel(self.inputs, self.participation[index]),
-            complexity=float(self.complexity[index]),
-            significance=float(self.significance[index]),
+        columns: tuple[Iterable[Any], ...] = (
+            range(1, len(self.frequencies) + 1),
+            self.frequencies.tolist(),
+            map(tuple, self.frequency_intervals.tolist()),
+            self.damping.tolist(),
+            map(tuple, self.damping_intervals.tolist()),
+            self.widening.tolist(),
+            (_by_channel(self.outputs, shape) for shape in self.shapes.T),
+            (_by_channel(self.inputs, row) for row in self.participation),
+            self.complexity.tolist(),
+            self.significance.tolist(),
         )
+        return tuple(IdentifiedMode(*row) for row in zip(*columns, strict=True))
 
     @property
     def notes(self) -> tuple[str, ...]:

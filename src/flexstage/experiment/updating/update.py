@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import scipy
@@ -114,13 +114,26 @@ class UpdatedNumber:
     unit: str
     before: Annotated[float, UnitIn("unit")]
     after: Annotated[float, UnitIn("unit")]
-    change: Annotated[float, RATIO, Heading(digits=3, unit="%")]
     prior_deviation: Annotated[float, RATIO, Heading("prior +-", digits=2, unit="%")]
     deviation: Annotated[float, RATIO, Heading("after +-", digits=2, unit="%")]
-    interval: tuple[float, float]
-    prior_variance_left: Annotated[float, RATIO, _REMAINING]
     told: Annotated[Told, Heading("identifiability", mark=_GRADES.__getitem__)]
     verdict: str
+
+    @property
+    def change(self) -> Annotated[float, VIEW, RATIO, Heading(digits=3, unit="%")]:
+        """Value after over value before, less one."""
+        return self.after / self.before - 1.0
+
+    @property
+    def interval(self) -> Annotated[tuple[float, float], VIEW]:
+        """95 % interval of the value, SI."""
+        low, high = sorted(self.after * float(np.exp(sign * NORMAL_95 * self.deviation)) for sign in (-1.0, 1.0))
+        return low, high
+
+    @property
+    def prior_variance_left(self) -> Annotated[float, VIEW, RATIO, _REMAINING]:
+        """Share of the prior's variance."""
+        return (self.deviation / self.prior_deviation) ** 2
 
 
 @dataclass(frozen=True)
@@ -186,23 +199,9 @@ class Updated(InNotebook):
     @property
     def parameters(self) -> Annotated[tuple[UpdatedNumber, ...], VIEW]:
         """The numbers one by one."""
-        return tuple(self._number(index) for index in range(len(self.addresses)))
-
-    def _number(self, index: int) -> UpdatedNumber:
-        low, high = self.intervals[index].tolist()
-        return UpdatedNumber(
-            address=self.addresses[index],
-            unit=self.units[index],
-            before=float(self.before[index]),
-            after=float(self.after[index]),
-            change=float(self.changes[index]),
-            prior_deviation=float(self.prior[index]),
-            deviation=float(self.deviations[index]),
-            interval=(low, high),
-            prior_variance_left=float(self.remaining_variance[index]),
-            told=self.told[index],
-            verdict=self.verdicts[index],
-        )
+        values = (column.tolist() for column in (self.before, self.after, self.prior, self.deviations))
+        columns: tuple[Iterable[Any], ...] = (self.addresses, self.units, *values, self.told, self.verdicts)
+        return tuple(UpdatedNumber(*row) for row in zip(*columns, strict=True))
 
     @property
     def combinations(self) -> Annotated[tuple[Combination, ...], VIEW]:
@@ -214,12 +213,6 @@ class Updated(InNotebook):
     def deviations(self) -> Array:
         """Posterior standard deviations (P,) of the logarithms."""
         return np.sqrt(np.diag(self.covariance))
-
-    @property
-    def intervals(self) -> Array:
-        """95 % intervals (P, 2) of the values, SI."""
-        ends = np.exp(NORMAL_95 * np.stack([-self.deviations, self.deviations], axis=-1)) * self.after[:, None]
-        return np.sort(ends, axis=-1)
 
     @property
     def changes(self) -> Array:

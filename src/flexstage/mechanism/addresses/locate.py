@@ -8,7 +8,7 @@ from typing import Any
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.renamed import new_name
 from flexstage.mechanism.addresses.path import completions, follow, has_member, member
-from flexstage.mechanism.assembly.expand import copy_names
+from flexstage.mechanism.assembly.expand import copy_names, unit_of_copy
 from flexstage.mechanism.assembly.likeness import ancestry, drawn_units, link_lineage
 from flexstage.mechanism.assembly.misalignment import MISALIGNED, Misalignment
 from flexstage.mechanism.grammar.formulas import NUMBERS
@@ -88,15 +88,6 @@ def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
     if owners.count(steps[0]) > 1:
         raise refuse(address, f'"{steps[0]}" is a copy of a unit and a gauge', "Rename one of them")
     return True
-
-
-def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
-    """Return the unit's name by name of each placed copy.
-
-    >>> unit_of_copy(Mechanism(""))
-    {}
-    """
-    return {copy: placement.unit for key, placement in mechanism.placements.items() for copy in copy_names(key)}
 
 
 def link_path(mechanism: Mechanism, owner: str) -> tuple[str, ...]:

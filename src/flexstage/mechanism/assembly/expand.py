@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
@@ -217,6 +217,19 @@ def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
     return tuple(_reflect(_polar_frame(pattern, pattern.first + number * step), pattern.mirror) for number in range(count))
 
 
+def patterned(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any, Frame]]:
+    """Yield name, entry and frame of every copy that entries with patterns place.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [name for name, _, _ in patterned(double_triangle().gauges)][:3]
+    ['S1', 'S2', 'S3']
+    """
+    for key, item in entries.items():
+        names = copy_names(key)
+        for name, frame in zip(names, copy_frames(item.pattern, len(names)), strict=True):
+            yield name, item, frame
+
+
 def _upright(pose: Pose) -> Vector | None:
     """The direction of a pose's z axis; none is meant where the usual one, z, lies along x: then a gauge is roundly alike."""
     x, y, z = (np.max(np.abs(np.real(component))) for component in pose.direction)
@@ -302,7 +315,16 @@ def _assembly(key: Same) -> Assembly:
     _ = [item.own for item in resting]  # nobody asks for their mass; what cannot be weighed is refused all the same
     ground = _placed_solids(resting)
     drives = _actuators(links, {copy for copy, _, _ in placed})
-    return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements, dict(_stops(mechanism)))
+    return Assembly(
+        bodies,
+        links,
+        _gauges(mechanism, links),
+        drives,
+        dict(_points(drawn)),
+        ground,
+        elements,
+        {name: place_stop(stop, frame.right_handed) for name, stop, frame in patterned(mechanism.stops)},
+    )
 
 
 def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -373,11 +395,17 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
     >>> [name for name, _, _ in copies(double_triangle())]
     ['B1', 'B2', 'B3', 'B4', 'B5', 'B6']
     """
-    for key, placement in mechanism.placements.items():
-        names = copy_names(key)
-        frames = copy_frames(placement.pattern, len(names))
-        for name, frame in zip(names, frames, strict=True):
-            yield name, placement.unit, misalign(frame, mechanism.overrides, name)
+    for name, placement, frame in patterned(mechanism.placements):
+        yield name, placement.unit, misalign(frame, mechanism.overrides, name)
+
+
+def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
+    """Return the unit's name by name of each placed copy.
+
+    >>> unit_of_copy(Mechanism(""))
+    {}
+    """
+    return {copy: placement.unit for key, placement in mechanism.placements.items() for copy in copy_names(key)}
 
 
 def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
@@ -387,8 +415,8 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
     >>> list(placed_bodies(double_triangle()))[:3]
     ['platform', 'B1/base', 'B1/tip']
     """
-    drawn = {name: unit.bodies for name, unit in drawn_units(mechanism).items()}
-    placed = [(copy, drawn.get(placement.unit, {})) for key, placement in mechanism.placements.items() for copy in copy_names(key)]
+    drawn = drawn_units(mechanism)
+    placed = [(copy, drawn[unit].bodies) for copy, unit in unit_of_copy(mechanism).items() if unit in drawn]
     return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
 
 
@@ -649,19 +677,11 @@ def _gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink]) -> dict[str, 
 
 
 def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: str, place: GaugePlace) -> Iterator[PlacedGauge]:
-    names = copy_names(key)
     if isinstance(place, Probe):
         gauge = mechanism.sensors[place.gauge]
-        for name, frame in zip(names, copy_frames(place.pattern, len(names)), strict=True):
+        for name, _, frame in patterned({key: place}):
             yield PlacedGauge(name, gauge, (sight(place, gauge, misalign(frame, mechanism.overrides, name).right_handed),))
     elif isinstance(place, LinkProbe):
         gauge = mechanism.sensors[place.gauge]
-        for name, link in zip(names, (links[each] for each in link_names(place.link)), strict=True):
+        for name, link in zip(copy_names(key), (links[each] for each in link_names(place.link)), strict=True):
             yield PlacedGauge(name, gauge, (sight_of_link(*link.joins, link.frame, link.part, gauge),))
-
-
-def _stops(mechanism: Mechanism) -> Iterator[tuple[str, PlacedStop]]:
-    for key, stop in mechanism.stops.items():
-        names = copy_names(key)
-        for name, frame in zip(names, copy_frames(stop.pattern, len(names)), strict=True):
-            yield name, place_stop(stop, frame.right_handed)

@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
 from flexstage.base.storage.digest import Description, digest
 from flexstage.mechanism.addresses.locate import canonical
-from flexstage.mechanism.assembly.expand import copy_frames, placed_bodies
+from flexstage.mechanism.assembly.expand import copy_frames, patterned, placed_bodies
 from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.assembly.pattern import Normal, Pose, copy_names
 from flexstage.mechanism.assembly.sight import link_names
@@ -179,10 +179,8 @@ class _Names:
 
 def _placed(entries: Mapping[str, Any], outer: Frame) -> Iterator[tuple[str, Any]]:
     """Copies one by one, each in its pose in the carrying stage."""
-    for key, item in entries.items():
-        names = copy_names(key)
-        for name, frame in zip(names, copy_frames(item.pattern, len(names)), strict=True):
-            yield name, replace(item, pattern=_pose(frame.within(outer)))
+    for name, item, frame in patterned(entries):
+        yield name, replace(item, pattern=_pose(frame.within(outer)))
 
 
 def _gauges(carried: Mechanism, name: str, frame: Frame) -> Iterator[tuple[str, GaugePlace]]:

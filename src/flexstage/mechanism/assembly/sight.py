@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
 
@@ -102,12 +103,8 @@ def place_sum(name: str, place: GaugeSum, gauges: Mapping[str, GaugePlace], sing
     members: dict[str, Number] = {}
     for member, weight in _members(place, gauges):
         members[member] = members.get(member, 0.0) + weight
-    sights = tuple(_weighted(item, weight) for member, weight in members.items() for item in single[member].sights)
+    sights = tuple(replace(item, weight=item.weight * weight) for member, weight in members.items() for item in single[member].sights)
     return PlacedGauge(name, combine_gauges([(weight, single[member].gauge) for member, weight in members.items()]), sights, members)
-
-
-def _weighted(item: Sight, weight: Number) -> Sight:
-    return Sight(item.body, item.base, item.frame, item.foot, item.component, item.weight * weight)
 
 
 def _members(place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[tuple[str, Number]]:
@@ -168,25 +165,23 @@ def _sum_findings(where: str, key: str, place: GaugeSum, gauges: Mapping[str, Ga
     for name in place.sum:
         if name not in known:
             yield Finding(f"{where}.sum.{name}", f'there is no other gauge "{name}"', suggest_nearest(name, known))
-    if key in place.sum or _turns_back(key, place, gauges):
+    if key in _circle(gauges):
         yield Finding(f"{where}.sum", "it takes itself up", "Name other gauges")
 
 
-def _turns_back(key: str, place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> bool:
-    """Whether a sum takes itself up through others."""
-    seen: set[str] = set()
-    left = list(place.sum)
-    while left:
-        name = left.pop()
-        inner = gauges.get(name)
-        if isinstance(inner, GaugeSum) and name not in seen:
-            seen.add(name)
-            left += inner.sum
-    return key in seen
+def _circle(gauges: Mapping[str, GaugePlace]) -> list[str]:
+    """Sums that take one another up in a circle, the first that is found."""
+    try:
+        TopologicalSorter({name: place.sum for name, place in gauges.items() if isinstance(place, GaugeSum)}).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
 
 
 def _mixture_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Sums of gauges that read different quantities."""
+    if _circle(mechanism.gauges):
+        return
     units = {
         name: mechanism.sensors[place.gauge].quantity.si
         for key, place in mechanism.gauges.items()
@@ -194,7 +189,7 @@ def _mixture_findings(mechanism: Mechanism) -> Iterator[Finding]:
         for name in copy_names(key)
     }
     for key, place in mechanism.gauges.items():
-        if isinstance(place, GaugeSum) and not _turns_back(key, place, mechanism.gauges):
+        if isinstance(place, GaugeSum):
             counted = Counter(units[name] for name, _ in _members(place, mechanism.gauges) if name in units)
             if len(counted) > 1:
                 what = f"its members read {' and '.join(sorted(counted))}"

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, Number, first_design, stack
-from flexstage.base.units.quantity import LENGTH, Quantity
+from flexstage.base.number import Array, first_design, stack
+from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.mechanism.addresses.locate import link_path, locate
 from flexstage.mechanism.addresses.path import follow
@@ -121,59 +120,22 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
     yield from _orders(where, part.orders if isinstance(part, Elastic) else ())
     if isinstance(part, Elastic):
         yield from (replace(fault, where=join(where, fault.where) if fault.where else where) for fault in part.faults)
-    if isinstance(part, ComplianceMatrix):
-        yield from _given_findings(where, part)
-        yield from () if part.inertia is None else _inertia(f"{where}.inertia", part.inertia)
+    if isinstance(part, ComplianceMatrix) and part.inertia is not None:
+        yield from _inertia(f"{where}.inertia", part.inertia)
 
 
 def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
+    """A number is less than another one, or at most as large."""
     for order in orders:
-        compared = _Order(f"{where}.{order.field}", order.quantity, order.other, order.advice)
-        yield from (compared.strict if order.strict else compared.loose)(order.small, order.large)
-
-
-@dataclass(frozen=True)
-class _Order:
-    """A comparison of two numbers of a description, and how it is told."""
-
-    where: str
-    quantity: Quantity
-    other: str
-    advice: str
-
-    def strict(self, small: Number | None, large: Number | None) -> Iterator[Finding]:
-        """The first must be below the second."""
-        return self._report(small, large, "below", lambda low, high: low >= high)
-
-    def loose(self, small: Number | None, large: Number | None) -> Iterator[Finding]:
-        """The first must not be above the second."""
-        return self._report(small, large, "at most", lambda low, high: low > high * (1.0 + _SLACK))
-
-    def _report(self, small: Number | None, large: Number | None, word: str, fails: Callable[[Any, Any], Any]) -> Iterator[Finding]:
-        if small is None or large is None:
-            return
-        failing = fails(np.real(small), np.real(large))
+        if order.small is None or order.large is None:
+            continue
+        small, large = np.real(order.small), np.real(order.large)
+        failing = small >= large if order.strict else small > large * (1.0 + _SLACK)
         if np.any(failing):
             at, values = first_failing(failing, small, large)
-            low, high = (show(value, self.quantity, digits=6) for value in values)
-            yield Finding(f"{self.where}{at}", f"found {low}, which is not {word} {self.other}, {high}", self.advice)
-
-
-def _given_findings(where: str, part: ComplianceMatrix) -> Iterator[Finding]:
-    matrix = np.real(stack(part.compliance))
-    mirrored = np.swapaxes(matrix, -1, -2)
-    scale = np.sqrt(np.abs(np.einsum("...ii->...i", matrix)))
-    unequal = np.abs(matrix - mirrored) > _SLACK * scale[..., :, None] * scale[..., None, :]
-    if np.any(unequal):
-        at, (one, other) = first_failing(unequal, matrix, mirrored)
-        yield Finding(f"{where}.compliance{at}", f"it is not symmetric: {one:.6g} and {other:.6g} SI", "Give equal entries on both sides")
-        return
-    safe = np.where(scale > 0.0, scale, 1.0)
-    lowest = np.linalg.eigvalsh(matrix / safe[..., :, None] / safe[..., None, :])[..., 0]
-    if np.any(lowest <= 0.0):
-        at, (value,) = first_failing(lowest <= 0.0, lowest)
-        what = f"it is not positive definite: the lowest eigenvalue of its scaled form is {value:.3g}"
-        yield Finding(f"{where}.compliance{at}", what, "Check signs and units of its entries; a locked freedom is Restricted, not zero")
+            found, other = (show(value, order.quantity, digits=6) for value in values)
+            what = f"found {found}, which is not {'below' if order.strict else 'at most'} {order.other}, {other}"
+            yield Finding(f"{where}.{order.field}{at}", what, order.advice)
 
 
 def _body(where: str, body: Body) -> Iterator[Finding]:

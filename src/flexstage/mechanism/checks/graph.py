@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from flexstage.base.finding import Finding, name_first
-from flexstage.mechanism.assembly.expand import copy_names, joined, placed_bodies
+from flexstage.mechanism.assembly.expand import joined, placed_bodies, unit_of_copy
 from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import imposes_stroke
@@ -47,11 +47,9 @@ def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
     bodies = placed_bodies(mechanism)
     edges = [edge for name, link in mechanism.links.items() for edge in _edges(name, link.part, joined(link, bodies))]
     units = drawn_units(mechanism)
-    for key, placement in mechanism.placements.items():
-        unit = units[placement.unit]
-        for copy in copy_names(key):
-            for name, link in unit.links.items():
-                edges += _edges(f"{copy}/{name}", link.part, joined(link, bodies, copy, unit.bodies))
+    for copy, unit in unit_of_copy(mechanism).items():
+        for name, link in units[unit].links.items():
+            edges += _edges(f"{copy}/{name}", link.part, joined(link, bodies, copy, units[unit].bodies))
     return [name for name, body in bodies.items() if body.of is None], edges
 
 

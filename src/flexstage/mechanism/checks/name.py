@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.mechanism.assembly.expand import joined, placed_bodies, unknown_names
+from flexstage.mechanism.assembly.expand import joined, placed_bodies, unit_of_copy, unknown_names
 from flexstage.mechanism.assembly.likeness import drawn_units, likeness_findings
 from flexstage.mechanism.assembly.pattern import copy_names
 from flexstage.mechanism.assembly.sight import gauge_findings
@@ -155,19 +155,17 @@ def _check_stops(mechanism: Mechanism, moving: Iterable[str]) -> Iterator[Findin
 def _loops(mechanism: Mechanism) -> Iterator[Finding]:
     """Links of a unit that join a body of one copy: in that copy both ends may be the same."""
     bodies, units = placed_bodies(mechanism), drawn_units(mechanism)
-    for key, placement in mechanism.placements.items():
-        unit = units.get(placement.unit, Unit())
-        far = {name: link for name, link in unit.links.items() if any("/" in body for body in link.bodies)}
-        for copy in copy_names(key) if far else ():
-            for name, link in far.items():
-                first, *others = set(joined(link, bodies, copy, unit.bodies))
-                if not others:
-                    advice = "Draw that link in the stage itself, or in a unit of its own"
-                    yield Finding(f"{copy}/{name}.joins", f'in this copy both ends join "{first}"', advice)
+    for copy, name in unit_of_copy(mechanism).items():
+        unit = units.get(name, Unit())
+        for link_name, link in unit.links.items():
+            first, *others = set(joined(link, bodies, copy, unit.bodies))
+            if not others and any("/" in body for body in link.bodies):
+                advice = "Draw that link in the stage itself, or in a unit of its own"
+                yield Finding(f"{copy}/{link_name}.joins", f'in this copy both ends join "{first}"', advice)
 
 
 def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
-    copies = {name for key in mechanism.placements for name in copy_names(key)}
+    copies = set(unit_of_copy(mechanism))
     for kind, names in (("unit", mechanism.units), ("link", mechanism.links)):
         for name in sorted(copies & set(names)):
             advice = "Give one of them another name: addresses could mean either"
@@ -186,6 +184,5 @@ def _link(where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
 
 def _links_of_copies(mechanism: Mechanism) -> Iterator[str]:
     units = drawn_units(mechanism)
-    for key, placement in mechanism.placements.items():
-        links = units[placement.unit].links if placement.unit in units else ()
-        yield from (f"{copy}/{name}" for copy in copy_names(key) for name in links)
+    for copy, unit in unit_of_copy(mechanism).items():
+        yield from (f"{copy}/{name}" for name in (units[unit].links if unit in units else ()))

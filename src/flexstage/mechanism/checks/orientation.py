@@ -109,11 +109,12 @@ def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> 
 
 
 def _zero(where: str, direction: Vector) -> Iterator[Finding]:
-    components = np.real(stack(direction))
-    finite = np.isfinite(components).all(axis=-1)
-    largest = np.max(np.abs(components), axis=-1)
-    useless = ~finite | (largest < 1.0 / LARGEST) | (largest > LARGEST)
+    largest = np.max(np.abs(np.real(stack(direction))), axis=-1)
+    useless = (largest < 1.0 / LARGEST) | (largest > LARGEST)
     if np.any(useless):
         at, (length,) = first_failing(useless, largest)
-        fault = "not finite" if not np.isfinite(length) else "zero" if length == 0.0 else f"of length {length:.3g}"
-        yield Finding(f"{where}{at}", f"the direction is {fault}", "Give one of x, -x, y, -y, z, -z, or three numbers")
+        yield Finding(
+            f"{where}{at}",
+            f"the direction is {f'of length {length:.3g}' if length else 'zero'}",
+            "Give one of x, -x, y, -y, z, -z, or three numbers",
+        )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.units.quantity import RATIO
+from flexstage.base.units.quantity import RATIO, Bound
 from flexstage.base.units.unit import parse, show
 from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.grammar.grammar import node_of
@@ -64,13 +64,7 @@ def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Findin
     >>> print(*number_findings("peak", 0.5, NumberNode(RATIO, Bound(1.0, open_low=True))))
     peak: found 0.5, which is not greater than 1. Give a number that is greater than 1.
     """
-    example = f'Write for example "{node.quantity.example}"'
-    real = np.real(value)
-    endless = ~np.isfinite(value)
-    if np.any(endless):
-        at, (found,) = first_failing(endless, real)
-        yield Finding(f"{where}{at}", f"found {found}, which is not finite", example)
-        return
+    example, real = f'Write for example "{node.quantity.example}"', np.real(value)
     size = np.abs(real)
     extreme = (size > LARGEST) | ((size < 1.0 / LARGEST) & (size > 0.0))
     if np.any(extreme):
@@ -78,23 +72,16 @@ def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Findin
         told = show(found, node.quantity, digits=6)
         yield Finding(f"{where}{at}", f"found {told}, which nothing that is made can have", "Check the exponent and the unit")
         return
-    outside = _outside(real, node)
-    if node.bound is not None and np.any(outside):
-        at, (found,) = first_failing(outside, real)
-        fits = node.quantity is not RATIO or not _outside(parse(RATIO.example, RATIO), node)
-        advice = example if fits else f"Give a number that is {_bound_text(node)}"
-        yield Finding(f"{where}{at}", f"found {show(found, node.quantity, digits=6)}, which is not {_bound_text(node)}", advice)
-
-
-def _outside(real: Any, node: NumberNode) -> Any:
     bound = node.bound
-    if bound is None:
-        return np.zeros(np.shape(real), dtype=bool)
+    if bound is not None and np.any(outside := _outside(real, bound)):
+        at, (found,) = first_failing(outside, real)
+        fits = node.quantity is not RATIO or not _outside(parse(RATIO.example, RATIO), bound)
+        text = bound.text() if node.quantity.shown == "1" else f"{bound.text()} {node.quantity.shown}"
+        advice = example if fits else f"Give a number that is {text}"
+        yield Finding(f"{where}{at}", f"found {show(found, node.quantity, digits=6)}, which is not {text}", advice)
+
+
+def _outside(real: Any, bound: Bound) -> Any:
     low = real <= bound.low if bound.open_low else real < bound.low
     high = real >= bound.high if bound.open_high else real > bound.high
     return low | high
-
-
-def _bound_text(node: NumberNode) -> str:
-    text = node.bound.text() if node.bound else ""
-    return text if node.quantity.shown == "1" else f"{text} {node.quantity.shown}"

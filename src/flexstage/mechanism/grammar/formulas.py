@@ -21,8 +21,6 @@ from flexstage.base.units.expression import (
     Amount,
     Expression,
     ExpressionError,
-    Literal,
-    Name,
     Scope,
     UnknownAmountError,
     evaluate,
@@ -84,9 +82,10 @@ def is_formula(text: str, scope: Scope) -> bool:
     except ExpressionError:
         told = set(_WORD.findall(text)) & set(scope)
         return bool(told or (not is_plain(text) and _SIGN.search(text.strip()[1:])))
-    if isinstance(expression, Name):
-        return bool(scope) and expression.name.lower() not in _NOT_FINITE
-    return not isinstance(expression, Literal)
+    name = text.strip(" ()")
+    if set(expression.names) == {name}:
+        return bool(scope) and name.lower() not in _NOT_FINITE
+    return not expression.literal
 
 
 @dataclass(frozen=True, eq=False)

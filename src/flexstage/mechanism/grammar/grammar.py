@@ -122,6 +122,10 @@ class ListNode(RowNode):
         """Its values, all where it is."""
         return (("", self.item, part) for part in row)
 
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its items by number, from 1 on."""
+        return ((str(number), self.item, item) for number, item in enumerate(value, start=1))
+
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """An array."""
         length = {} if self.length is None else {"minItems": self.length, "maxItems": self.length}
@@ -135,6 +139,10 @@ class NumbersNode(ListNode):
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its values by their place."""
         return ((str(place), self.item, part) for place, part in enumerate(row))
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its values by their place."""
+        return self.parts(value)
 
     def child(self, value: Any, name: str) -> Node:
         """A number."""

@@ -355,12 +355,16 @@ class VectorNode(RowNode):
 
 
 @dataclass(frozen=True)
-class DirectionNode(Node):
+class DirectionNode(VectorNode):
     """Three components of a direction, of any length."""
 
+    items: tuple[Node, ...] = (NumberNode(RATIO),) * 3
     single: ClassVar[bool] = True
-    components: ClassVar[bool] = True
-    shown: ClassVar[str] = '"x"'
+
+    @property
+    def example(self) -> str:
+        """A direction by name."""
+        return '"x"'
 
     @property
     def measures(self) -> Quantity:
@@ -368,39 +372,26 @@ class DirectionNode(Node):
         return DIRECTION
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """A direction by name, or three bare numbers."""
-        advice = f"Write one of {', '.join(DIRECTIONS)}, or three numbers without units"
-        if isinstance(raw, str):
-            return DIRECTIONS.get(raw) or reader.refuse(where, f'found "{short(raw)}" where a direction is expected', advice)
-        formulas = reader.numbers is not None
-        if not isinstance(raw, list) or len(raw) != 3 or not all(is_bare(item) or (formulas and isinstance(item, str)) for item in raw):
+        """A direction by name, or three numbers without units."""
+        if isinstance(raw, str) and raw in DIRECTIONS:
+            return DIRECTIONS[raw]
+        if not isinstance(raw, list) or len(raw) != 3:
+            advice = f"Write one of {', '.join(DIRECTIONS)}, or three numbers without units"
             return reader.refuse(where, f"found {kind(raw)} where a direction is expected", advice)
-        component = NumberNode(RATIO)
-        return every(
-            [
-                reader.read(component, item, f"{where}.{name}") if isinstance(item, str) else _float(item, where)
-                for name, item in zip(COMPONENTS, raw, strict=False)
-            ]
-        )
+        return super().read(raw, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Its name, or its components."""
-        for item in value:
-            require_single(item, where)
-        formulas = [writer.formulas.get(f"{where}.{name}") for name in COMPONENTS[:3]]
-        if any(formulas):
-            return [formula or item for formula, item in zip(formulas, value, strict=True)]
-        return next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), list(value))
+        name = next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), None)
+        return super().write(value, where, writer) if name is None or writer.has_formula(where) else name
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A name or three numbers."""
-        text = {"type": "string", "pattern": _FORMULA}
-        component = {"anyOf": [{"type": "number"}, text]} if definitions.formulas else {"type": "number"}
-        return {"oneOf": [{"enum": list(DIRECTIONS)}, row_schema([component] * 3)]}
+        return {"oneOf": [{"enum": list(DIRECTIONS)}, super().schema(definitions)]}
 
-    def child(self, value: Any, name: str) -> Node:
-        """A component."""
-        return NumberNode(RATIO)
+    def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
+        """None: no component varies by itself."""
+        return iter(())
 
 
 def _rows(*quantities: Quantity) -> tuple[VectorNode, ...]:
@@ -646,8 +637,6 @@ def require_single(value: Any, where: str) -> None:
     """Raise `DesignError` for a number that a file cannot hold."""
     if not isinstance(value, (int, float)):
         raise refuse(where, "it is a batch or complex, and a file holds one design", "Pick one design before writing it")
-    if value - value != 0.0:
-        raise refuse(where, f"found {value}, which is not finite", "Give a finite number")
 
 
 def is_bare(raw: Any) -> bool:

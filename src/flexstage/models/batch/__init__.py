@@ -1,1 +1,1 @@
-"""The lumped model of many designs at once: platform frequencies and their derivatives, block by block on the graph of bodies."""
+"""Batch solution of the lumped model: platform frequencies and their derivatives for many designs, by blocks on the graph of bodies."""

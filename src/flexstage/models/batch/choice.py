@@ -1,8 +1,9 @@
-"""Platform frequencies: the lowest at which modes have made up a tenth of the platform's static compliance, direction by direction.
+"""Platform frequencies: the lowest at which the modes contribute a tenth of the platform's static compliance, in each direction.
 
-With phi the platform's twist in a mass-normalised mode and C = sum phi phi^T / omega^2 its static compliance, H(f) is the sum over the
-modes up to f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
-Eigenvalues of H depend on no unit, no reference point and no basis of repeated modes, and no mode above f changes them.
+With phi the platform twist in a mass-normalised mode and C = sum phi phi^T / omega^2 its static compliance, H(f) is the sum over the modes
+up to f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
+
+The eigenvalues of H do not depend on units, reference point, basis of repeated modes, or modes above f.
 """
 
 from __future__ import annotations
@@ -18,19 +19,20 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 THRESHOLD = 0.1
-"""The share of the compliance in some direction that modes must exceed. From 0.1 to 0.7 most stages have the same platform frequencies."""
+"""Fraction of the compliance in some direction that the modes must exceed. Most stages have equal results from 0.1 to 0.7.
+"""
 
 MARGIN = 5e-3
-"""How far eigenvalues of H are from the threshold where iteration decides: its modes change H by 2e-3 at most."""
+"""Margin of the eigenvalues of H from the threshold for a decision by iteration, whose modes change H by 2e-3 at most."""
 
 _LOCKED = 1e-12
-"""A compliance's square root below which, relative to the largest, a direction is locked, rotations taken over 0.1 m."""
+"""Relative square root of a compliance below which a direction is locked, with rotations taken over 0.1 m."""
 _LENGTHS = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 
 
 @dataclass(frozen=True)
 class Choice:
-    """How many platform frequencies are wanted, and which relative gap of frequencies joins modes to a cluster."""
+    """Number of requested platform frequencies, and the relative frequency gap that joins modes to a cluster."""
 
     count: int = 6
     cluster: float = 1e-6
@@ -38,9 +40,9 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class Chosen:
-    """`mask` (b, k) of the platform's modes; `exact` (b,): as many as asked.
+    """`mask` (b, k) of the platform modes; `exact` (b,): as many as requested.
 
-    Where only some modes of a cluster are the platform's, those of the largest participation stand for them.
+    If only some modes of a cluster are platform modes, those of largest participation represent them.
     """
 
     mask: Array
@@ -48,7 +50,7 @@ class Chosen:
 
 
 def platform_rows(model: LinearModel) -> Array:
-    """The platform's twist (..., 6, n) by the model's coordinates.
+    """Return the platform twist (..., 6, n) by the coordinates of the model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -59,7 +61,7 @@ def platform_rows(model: LinearModel) -> Array:
 
 
 def compliance_root(model: LinearModel, rows: Array) -> Array:
-    """A root R (..., r, 6) of the static compliance C = R^T R of motions given by `rows` (..., 6, n); NaN where K is not positive definite.
+    """Compute a root R (..., r, 6) of the static compliance C = R^T R of motions `rows` (..., 6, n); NaN for an indefinite K.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -75,11 +77,11 @@ def compliance_root(model: LinearModel, rows: Array) -> Array:
 
 
 def participation(root: Array, motions: Array, values: Array) -> Array:
-    """Participation C^-1/2 phi / omega (..., 6, k) of modes in the compliance C = R^T R, with the `root` R (..., r, 6).
+    """Compute the modal participation C^-1/2 phi / omega (..., 6, k) in the compliance C = R^T R, with the `root` R (..., r, 6).
 
-    `motions` (..., 6, k) are the platform's twists phi, `values` (..., k) lambda = omega^2. The square of a column's length is the share
-    of the compliance that the mode has in its own direction; over all modes, columns times themselves add up to the unit matrix. Directions
-    without compliance have no part.
+    `motions` (..., 6, k) are the platform twists phi, `values` (..., k) lambda = omega^2. The squared length of a column is the fraction of
+    the compliance that the mode has in its own direction. Over all modes, columns times themselves add up to the unit matrix. Directions
+    without compliance are excluded.
 
     >>> participation(np.diag([0.5] * 6), np.eye(6), np.full(6, 4.0)).diagonal().tolist()  # springs of 4 N/m, masses of 1 kg
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
@@ -114,7 +116,7 @@ def choose(values: Array, parts: Array, choice: Choice) -> Chosen:
 
 
 def groups(values: Array, gap: float) -> Array:
-    """Numbers (b, k) of the clusters of ascending values: a relative gap above `gap` begins a new one.
+    """Number the clusters (b, k) of ascending values: a relative gap above `gap` starts a new one.
 
     >>> groups(np.array([[1.0, 1.0 + 1e-9, 2.0]]), 1e-6).tolist()
     [[0, 0, 1]]

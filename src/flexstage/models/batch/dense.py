@@ -1,4 +1,4 @@
-"""All modes by dense matrices: of the family's own design, of stages that are small or locked, and of designs that iteration leaves."""
+"""All modes by dense matrices: for the nominal design, for small or locked stages, and for designs that the iteration rejects."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from flexstage.models.linear.eigen import cholesky, solve
 from flexstage.models.linear.model import LinearModel
 
 _SINGULAR = 1e-11
-"""Least eigenvalue of K scaled to a unit diagonal; below it `models.lumped` finds a motion without stiffness."""
+"""Minimum eigenvalue of K scaled to a unit diagonal; below it `models.lumped` treats a motion as one without stiffness."""
 
 
 @dataclass(frozen=True, eq=False)
 class Whole:
     """All modes of one design: `values` lambda (k,) and `shapes` (n, k); empty where K is singular.
 
-    `parts` (6, k) is their participation in the platform's compliance. Of repeated modes those come first that have most of it.
+    `parts` (6, k) is their participation in the platform compliance. Repeated modes are sorted by decreasing participation.
     """
 
     values: Array
@@ -28,7 +28,7 @@ class Whole:
 
 
 def whole(stiffness: Array, inertia: Array, rows: Array, cluster: float) -> Whole:
-    """Every mode of one design; `rows` (6, n) is the platform's twist, `cluster` the gap of repeated modes.
+    """Compute every mode of one design; `rows` (6, n) is the platform twist, `cluster` the gap of repeated modes.
 
     >>> whole(np.diag([4.0, 1.0]), np.eye(2), np.eye(6, 2), 1e-6).values.tolist()
     [1.0, 4.0]
@@ -61,7 +61,7 @@ def _is_singular(scaled: Array) -> bool:
 
 
 def whole_modes(model: LinearModel, count: int, cluster: float) -> list[Whole]:
-    """Every mode of each of `count` designs of a model.
+    """Compute every mode of each of `count` designs of a model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -76,5 +76,5 @@ def whole_modes(model: LinearModel, count: int, cluster: float) -> list[Whole]:
 
 
 def platform_values(modes: Whole, choice: Choice) -> Array:
-    """Eigenvalues (k,) of the platform's modes of one design."""
+    """Compute the eigenvalues (k,) of the platform modes of one design."""
     return modes.values[choose(modes.values[None], modes.parts[None], choice).mask[0]] if len(modes.values) else modes.values

@@ -1,8 +1,9 @@
 """Platform frequencies of many designs at once.
 
-Numbers of designs (`family`) are iterated from the modes of the family's own design in C (`kernel`), by the order in which bodies are
-eliminated (`graph`). What iteration does not prove is solved again whole (`dense`), as are all designs where there is no kernel. Every
-design is computed by itself: results do not depend on the others beside it.
+Designs (`family`) are iterated in C (`kernel`) from the modes of the nominal design, in the elimination order of the bodies (`graph`).
+Designs without a proven result are solved by dense matrices (`dense`), as are all designs without a kernel.
+
+Every design is computed individually: results do not depend on the others.
 """
 
 from __future__ import annotations
@@ -26,30 +27,32 @@ from flexstage.models.batch.surface import Surface, surface
 from flexstage.models.lumped import lumped
 
 _CHUNK, _PORTION = 512, 32
-"""Designs described at once, and those solved whole at once: as many as the processor's cache holds."""
+"""Designs described at once, and designs solved by dense matrices at once: as many as the processor cache holds."""
 _MOST = 16
-"""Vectors of a block at most."""
+"""Maximum number of vectors of a block."""
 _WIDE = 0.02
-"""Relative gap of eigenvalues in which a shift may lie."""
+"""Relative gap of eigenvalues that can contain a shift."""
 
 
 class Status(IntEnum):
-    """How a design ended."""
+    """Solution status of a design."""
 
     ITERATED = 0
-    """By iteration, proved."""
+    """Solved by iteration, with proof."""
     WHOLE = 1
-    """By dense matrices."""
+    """Solved by dense matrices."""
     NONE = 2
-    """It has fewer platform frequencies than asked for, or cannot be read: none are given. Reading it by itself tells why."""
+    """Fewer platform frequencies than requested, or an invalid design: no result. A single-design solution reports the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What is found once for a family of designs.
+    """Data computed once for a family of designs.
 
-    `tables` of its topology for the kernel, and what iteration starts from, first with as few modes as are needed and then, where modes
-    cross, with more (none: all are solved whole); the `surface` of their numbers over stated ranges.
+    - `tables`: topology for the kernel.
+    - `starts`: start values of the iteration, first with the modes that are needed, then with more if modes cross (empty: dense solution of
+      all designs).
+    - `surface`: the polynomial fit of the numbers over specified ranges.
     """
 
     family: Family
@@ -61,42 +64,42 @@ class Plan:
 
 @dataclass(frozen=True, eq=False)
 class PlatformModes:
-    """Ascending `frequencies` (b, k) [Hz] of the platform's modes of b designs, NaN where there are none, and `status` (b,)."""
+    """Ascending `frequencies` (b, k) [Hz] of the platform modes of b designs, NaN if absent, and `status` (b,)."""
 
     frequencies: Array
     status: Array
 
 
 Ranges = tuple[Array, Array]
-"""Least and largest values (P,) of the numbers that vary."""
+"""Minimum and maximum values (P,) of the numbers that vary."""
 
 
 @one_thread
 def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None = None, ranges: Ranges | None = None) -> Plan:
-    """Plan a family of designs around a mechanism, with other numbers at the addresses.
+    """Plan a family of designs: a mechanism with other numbers at the addresses.
 
-    With `ranges` their numbers are fitted over them once (seconds), where polynomials meet them to 1e-10: then numbers of designs within
-    cost less than solving. Others are described one by one, as they all are without ranges.
+    With `ranges` the numbers are fitted by polynomials once (seconds), where these reach an error of 1e-10. Designs within the ranges then
+    cost less than a solution. Designs outside, and all designs without ranges, are described one by one.
 
-    Raises `DesignError` for addresses that are none, and for a mechanism whose own stiffness is singular.
+    Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = plan(double_triangle(), ("parts.neck.thickness",))
-    >>> len(found.family.topology.bodies), [start.needed for start in found.starts]
+    >>> result = plan(double_triangle(), ("parts.neck.thickness",))
+    >>> len(result.family.topology.bodies), [start.needed for start in result.starts]
     (19, [6, 12])
     """
     return plan_family(family(mechanism, addresses), choice, ranges)
 
 
 def plan_family(family_: Family, choice: Choice | None = None, ranges: Ranges | None = None) -> Plan:
-    """Plan a family of designs, however it is drawn: see `plan`.
+    """Plan a family of designs of any description; see `plan`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(plan_family(family(double_triangle(), ("parts.neck.thickness",))).starts)
     2
     """
     choice = choice or Choice()
-    model = lumped(family_.mechanism)  # raises `DesignError` where bodies can move freely
+    model = lumped(family_.mechanism)  # raises `DesignError` for free motions of bodies
     if family_.topology.locked:
         return Plan(family_, choice, {})
     (modes,) = whole_modes(model, 1, choice.cluster)
@@ -108,7 +111,7 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: Ranges | 
 
 
 def _starts(modes: Whole, forces: Array, choice: Choice) -> list[Start]:
-    """The modes that are needed, and as many as there is room for; none if that is not less than all."""
+    """Starts with the modes that are needed, and with as many as there is room for; none if that is not fewer than all."""
     picked, values = choose(modes.values[None], modes.parts[None], choice), modes.values
     if not picked.exact[0] or choice.count > MODES:
         return []
@@ -123,7 +126,7 @@ def _starts(modes: Whole, forces: Array, choice: Choice) -> list[Start]:
 
 
 def _shift(values: Array) -> float:
-    """Amid the wanted eigenvalues, far from each."""
+    """A shift between the requested eigenvalues, far from each."""
     edges = np.concatenate([[0.0], values])
     between, wide = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges) > _WIDE * edges[1:]
     return float(between[wide][np.argmin(np.abs(between[wide] - 0.5 * (values[0] + values[-1])))])
@@ -131,27 +134,29 @@ def _shift(values: Array) -> float:
 
 @one_thread
 def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
-    """The platform's frequencies of designs given by the numbers (b, P) at the plan's addresses.
+    """Compute the platform frequencies of designs given by the numbers (b, P) at the plan's addresses.
 
-    They agree with those of `models.lumped` solved whole within 1e-6 (relative), proved design by design. Numbers that are not finite,
-    stiffness that is not positive and outlines that cannot be weighed stop no other design: its `Status` says that it has none.
+    They agree with `models.lumped` solved by dense matrices within 1e-6 (relative), proven for each design.
+
+    Invalid designs do not affect the others: for non-finite numbers, a stiffness that is not positive or outlines without a mass, the
+    `Status` says that no result exists.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))
-    >>> found.frequencies[:2, 5].round(2).tolist(), Status(found.status[2]).name
+    >>> result = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))
+    >>> result.frequencies[:2, 5].round(2).tolist(), Status(result.status[2]).name
     ([173.09, 174.3], 'NONE')
     """
     values = np.asarray(values, dtype=float)
     squares, status = np.full((len(values), plan_.choice.count), np.nan), np.full(len(values), int(Status.NONE))
     sound = np.flatnonzero(np.isfinite(values).all(axis=1))
-    with np.errstate(all="ignore"):  # designs far from any sense have no frequencies
+    with np.errstate(all="ignore"):  # nonsensical designs have no frequencies
         for start in range(0, len(sound), _CHUNK):
             _solve(plan_, values, sound[start : start + _CHUNK], squares, status)
     return PlatformModes(np.sqrt(squares) / (2.0 * np.pi), status)
 
 
 def _solve(plan_: Plan, values: Array, designs: Array, squares: Array, status: Array) -> None:
-    """Write eigenvalues and status of some designs; of what cannot be described together by halves, down to the design that cannot."""
+    """Write eigenvalues and status of some designs; bisect designs that cannot be described together, down to the invalid one."""
     try:
         left = _iterate(plan_, values, designs, squares, status)
         size = 1 if plan_.family.topology.locked else _PORTION
@@ -159,16 +164,16 @@ def _solve(plan_: Plan, values: Array, designs: Array, squares: Array, status: A
             portion = left[start : start + size]
             model = lumped(describe(plan_.family, values[portion]))
             for design, modes in zip(portion, whole_modes(model, len(portion), plan_.choice.cluster), strict=True):
-                found = platform_values(modes, plan_.choice)
-                if len(found) == plan_.choice.count:
-                    squares[design], status[design] = found, Status.WHOLE
+                result = platform_values(modes, plan_.choice)
+                if len(result) == plan_.choice.count:
+                    squares[design], status[design] = result, Status.WHOLE
     except DesignError:
         for half in np.array_split(designs, 2) if len(designs) > 1 else ():
             _solve(plan_, values, half, squares, status)
 
 
 def _iterate(plan_: Plan, values: Array, designs: Array, squares: Array, status: Array) -> Array:
-    """Write what iteration proves of some designs, and return the others."""
+    """Write the proven results of some designs, and return the other designs."""
     library = kernel()
     if library is None or not plan_.starts:
         return designs
@@ -177,17 +182,17 @@ def _iterate(plan_: Plan, values: Array, designs: Array, squares: Array, status:
     for start in plan_.starts:
         if not len(left):
             break
-        found, good = solve_designs(library, plan_.tables, numbers[:, left], start, plan_.choice)
-        squares[designs[left[good]]], status[designs[left[good]]] = found[good], Status.ITERATED
+        result, good = solve_designs(library, plan_.tables, numbers[:, left], start, plan_.choice)
+        squares[designs[left[good]]], status[designs[left[good]]] = result[good], Status.ITERATED
         left = left[~good]
     return designs[left]
 
 
 def _numbers(plan_: Plan, values: Array) -> Array:
-    """The numbers of designs, fitted where they are within the ranges of that."""
+    """The numbers of designs, by the fit within its ranges."""
     if plan_.surface is None:
         return numbers_of(plan_.family, values)
-    found, outside = plan_.surface.numbers(values), np.flatnonzero(~plan_.surface.holds(values))
+    result, outside = plan_.surface.numbers(values), np.flatnonzero(~plan_.surface.holds(values))
     if len(outside):
-        found[:, outside] = numbers_of(plan_.family, values[outside])
-    return found
+        result[:, outside] = numbers_of(plan_.family, values[outside])
+    return result

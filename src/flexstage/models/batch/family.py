@@ -1,4 +1,4 @@
-"""Families of designs that differ in some numbers: their descriptions, and what the kernel takes of them."""
+"""Families of designs that differ in some numbers: their descriptions, and the input of the kernel."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.batch.graph import SHAPES, Topology, distinct_links, topology
 
 INERTIA_ENTRIES = np.array([0, 1, 2, 0, 3, 4, 4, 5, 5, 5]), np.array([0, 5, 3, 4, 3, 3, 4, 3, 4, 5])
-"""Where the numbers of an inertia stand in its 6x6 matrix."""
+"""Position of the numbers of an inertia in its 6x6 matrix."""
 
 Draw = Callable[[tuple[Array, ...]], Mechanism]
-"""What makes a description of numbers (...), one array each."""
+"""Function from numbers (...), one array each, to a description."""
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
     """Designs that differ in P numbers, around a `mechanism`; `nominal` (P,) are its own.
 
-    `points` (3,): where the reference point of the nominal design is in each body that does not state one; there others are seen from.
+    `points` (3,): reference point of the nominal design in each body that does not specify one, used for all designs.
     """
 
     mechanism: Mechanism
@@ -41,12 +41,12 @@ class Family:
 
     @cached_property
     def located(self) -> tuple[Place, ...]:
-        """Where the addresses point."""
+        """Locations of the addresses in the description."""
         return tuple(locate(self.mechanism, address) for address in self.addresses)
 
 
 def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
-    """The family of a design and the addresses of the numbers that vary; raises `DesignError` for addresses there are none of.
+    """Build the family of a design and the addresses of the numbers that vary; raises `DesignError` for unknown addresses.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> family(double_triangle(), ("parts.neck.thickness",)).nominal.round(6).tolist()
@@ -60,7 +60,7 @@ def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
 
 
 def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
-    """The family of the descriptions that `draw` makes of numbers with these names, around those of the `nominal` ones (P,).
+    """Build the family of the descriptions that `draw` makes of numbers with these names, around the `nominal` ones (P,).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> def leaves(columns):
@@ -80,7 +80,7 @@ def _family(plain: Mechanism, names: tuple[str, ...], nominal: Array) -> Family:
 
 
 def describe(family_: Family, values: Array) -> Mechanism:
-    """The description of many designs, from their numbers (b, P).
+    """Describe many designs by their numbers (b, P).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = family(double_triangle(), ("parts.neck.thickness",))
@@ -97,7 +97,7 @@ def describe(family_: Family, values: Array) -> Mechanism:
 
 
 def numbers_of(family_: Family, values: Array) -> Array:
-    """What the kernel takes of designs given by (b, P): (numbers, b), in the order of `graph.SHAPES`.
+    """Compute the kernel input of designs given by (b, P): (numbers, b), in the order of `graph.SHAPES`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> numbers_of(family(double_triangle(), ("parts.neck.thickness",)), np.array([[1.5e-3], [1.6e-3]])).shape
@@ -111,13 +111,13 @@ def numbers_of(family_: Family, values: Array) -> Array:
     }
     laws = [law_and_mass(link.part, link.material) for link in distinct_links(assembly).values()]
     links = assembly.links.values()
-    found: list[Array] = [*(law.stiffness for law, _ in laws), *(mass for _, mass in laws), *(link.frame.rotation for link in links)]
+    kernel_rows: list[Array] = [*(law.stiffness for law, _ in laws), *(mass for _, mass in laws), *(link.frame.rotation for link in links)]
     for side in (0, 1):
         ends = [(link.joins[side], link.frame.position) for link in links]
-        found += [np.zeros(3) if body == GROUND else bodies[body].reference - place for body, place in ends]
+        kernel_rows += [np.zeros(3) if body == GROUND else bodies[body].reference - place for body, place in ends]
     for name in family_.topology.bodies:
         inertia = moving_inertia(mechanism, bodies[name])
-        found.append(np.zeros(10) if inertia is None else inertia[..., *INERTIA_ENTRIES])
+        kernel_rows.append(np.zeros(10) if inertia is None else inertia[..., *INERTIA_ENTRIES])
     shapes = [SHAPES[kind] for kind, count in family_.topology.counts.items() for _ in range(count)]
-    rows = [array.reshape(-1, int(np.prod(shape))).T for array, shape in zip(found, shapes, strict=True)]
+    rows = [array.reshape(-1, int(np.prod(shape))).T for array, shape in zip(kernel_rows, shapes, strict=True)]
     return np.concatenate([np.broadcast_to(row, (len(row), len(values))) for row in rows])

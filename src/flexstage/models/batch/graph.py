@@ -1,4 +1,4 @@
-"""Bodies and links of a stage as a graph, and the order in which its bodies are eliminated: found once for a family of designs."""
+"""Graph of bodies and links of a stage, and the elimination order of its bodies: computed once for a family of designs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flexstage.mechanism.assembly.incidence import layout
 from flexstage.mechanism.mechanism import GROUND
 
 GROUNDED = -1
-"""The ground among the numbers of bodies."""
+"""Number of the ground among the bodies."""
 
 SHAPES: Mapping[str, tuple[int, ...]] = {
     "stiffness": (6, 6),
@@ -26,16 +26,19 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
     "second": (3,),
     "inertia": (10,),
 }
-"""What a design is known by, in this order: stiffness and mass of each distinct part in its link's frame; axes of each link in the stage
-and arms from it to points of its two bodies; mass, moments of mass and moments of inertia (xx, yx, yy, zx, zy, zz) of each body about
-that point."""
+"""Numbers of a design, in this order:
+
+- stiffness and mass of each distinct part in its link frame;
+- axes of each link in the stage, and arms from it to points of its two bodies;
+- mass, moments of mass and moments of inertia (xx, yx, yy, zx, zy, zz) of each body about that point.
+"""
 
 
 @dataclass(frozen=True)
 class Topology:
-    """Who is joined to whom: `links` are (part, first body, second body), bodies by number, the platform first.
+    """Connectivity of the stage: `links` are (part, first body, second body), bodies by number, the platform first.
 
-    `locked`: some freedom is locked or loose, or a part has coordinates of its own, so that bodies do not move freely in six freedoms each.
+    `locked`: some freedom is locked or loose, or a part has coordinates of its own, so that a body does not have six free coordinates.
     """
 
     bodies: tuple[str, ...]
@@ -45,46 +48,46 @@ class Topology:
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """How many arrays of each kind there are."""
+        """Number of arrays of each kind."""
         owners = (self.parts, self.parts, len(self.links), len(self.links), len(self.links), len(self.bodies))
         return dict(zip(SHAPES, owners, strict=True))
 
     @cached_property
     def starts(self) -> Mapping[str, int]:
-        """Where the numbers of each kind begin among all."""
+        """Offset of each kind in the array of all numbers."""
         sizes = [count * int(np.prod(SHAPES[kind])) for kind, count in self.counts.items()]
         return dict(zip(SHAPES, np.cumsum([0, *sizes[:-1]]).tolist(), strict=True))
 
     @property
     def mirror(self) -> Array:
-        """Of each number the one that is the same, as matrices are symmetric; or itself.
+        """For each number, the index of its equal by symmetry of the matrices, or its own index.
 
         >>> Topology(("platform",), ((0, -1, 0),), 1, locked=False).mirror[:7].tolist()
         [0, 6, 12, 18, 24, 30, 1]
         """
-        found = []
+        indices = []
         for kind, count in self.counts.items():
             shape = (count, *SHAPES[kind])
             own = self.starts[kind] + np.arange(int(np.prod(shape))).reshape(shape)
-            found.append((np.swapaxes(own, 1, 2) if kind in {"stiffness", "mass"} else own).ravel())
-        return np.concatenate(found)
+            indices.append((np.swapaxes(own, 1, 2) if kind in {"stiffness", "mass"} else own).ravel())
+        return np.concatenate(indices)
 
 
 def distinct_links(assembly: Assembly) -> dict[tuple[int, int], PlacedLink]:
-    """A link of each distinct part and material, by both."""
-    found: dict[tuple[int, int], PlacedLink] = {}
+    """The first link of each distinct pair of part and material."""
+    links: dict[tuple[int, int], PlacedLink] = {}
     for link in assembly.links.values():
-        found.setdefault((id(link.part), id(link.material)), link)
-    return found
+        links.setdefault((id(link.part), id(link.material)), link)
+    return links
 
 
 def topology(assembly: Assembly) -> Topology:
-    """The topology of an expanded stage; links of one part and material share its number.
+    """Build the topology of an expanded stage; links of equal part and material share a number.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> found = topology(expand(double_triangle()))
-    >>> len(found.bodies), len(found.links), found.parts, found.locked
+    >>> result = topology(expand(double_triangle()))
+    >>> len(result.bodies), len(result.links), result.parts, result.locked
     (19, 27, 6, False)
     """
     bodies, parts = layout(assembly).bodies, distinct_links(assembly)
@@ -100,7 +103,7 @@ def topology(assembly: Assembly) -> Topology:
 
 @dataclass(frozen=True)
 class Elimination:
-    """Bodies in the order they are eliminated, the kept one last; `edges` are the pairs (first, later) of the filled graph by their first.
+    """Elimination order of bodies, the kept one last; `edges` are the pairs (first, later) of the filled graph, sorted by first.
 
     All indices of edges are positions in that order.
     """
@@ -110,13 +113,13 @@ class Elimination:
 
     @cached_property
     def updates(self) -> tuple[tuple[int, int, int], ...]:
-        """(edge, edge, target) of every product of two edges of one node; target -1 is the later node's own block."""
+        """Triples (edge, edge, target) of every product of two edges of one node; target -1 is the later node's own block."""
         place = {edge: number for number, edge in enumerate(self.edges)}
-        found: list[tuple[int, int, int]] = []
+        triples: list[tuple[int, int, int]] = []
         for _, own in itertools.groupby(range(len(self.edges)), key=lambda number: self.edges[number][0]):
             for left, right in itertools.combinations_with_replacement(own, 2):
-                found.append((left, right, -1 if left == right else place[self.edges[left][1], self.edges[right][1]]))
-        return tuple(found)
+                triples.append((left, right, -1 if left == right else place[self.edges[left][1], self.edges[right][1]]))
+        return tuple(triples)
 
 
 def elimination(count: int, edges: Iterable[tuple[int, int]], keep: int) -> Elimination:
@@ -143,7 +146,7 @@ def elimination(count: int, edges: Iterable[tuple[int, int]], keep: int) -> Elim
             near[one] -= {one, node}
         left.remove(node)
     level = dict.fromkeys((*later, keep), 0)
-    for node, bound in later.items():  # in the order of elimination
+    for node, bound in later.items():  # in elimination order
         for other in bound:
             level[other] = max(level[other], level[node] + 1)
     order = (*sorted(later, key=lambda node: level[node]), keep)
@@ -156,7 +159,7 @@ def _fill(near: dict[int, set[int]], node: int) -> int:
 
 
 def eliminate_bodies(topology: Topology) -> Elimination:
-    """The order in which the bodies of a topology are eliminated, the platform last.
+    """Compute the elimination order of the bodies of a topology, the platform last.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

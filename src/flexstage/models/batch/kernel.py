@@ -1,7 +1,7 @@
-"""The iteration in C, several designs in each vector of the processor: there where it was built at installation, never required.
+"""Compiled iteration in C, several designs per vector register: used if it was built at installation, never required.
 
-Where there is none, dense matrices do the same work. FLEXSTAGE_KERNEL=off does without it, FLEXSTAGE_KERNEL=avx2 takes vectors of four
-where a processor has those of eight.
+Without the kernel, dense matrices give the same results. `FLEXSTAGE_KERNEL=off` disables it; `FLEXSTAGE_KERNEL=avx2` uses vectors of four
+on processors with vectors of eight.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from flexstage.models.batch.choice import MARGIN, THRESHOLD, Choice
 from flexstage.models.batch.graph import GROUNDED, SHAPES, Elimination, Topology
 
 MODES = 12
-"""Platform modes that the kernel finds at most."""
+"""Maximum number of platform modes in the kernel."""
 _ROUNDS = 2
-"""How often modes are found one by one at most."""
+"""Maximum number of repetitions of the mode-by-mode iteration."""
 _VALUE = 1e-6
-"""Relative bound of eigenvalues."""
+"""Relative error bound of eigenvalues."""
 _TOGETHER = 1e-4
-"""Relative gap of eigenvalues below which one side of it is not counted without the other."""
+"""Relative gap of eigenvalues below which both sides are counted together."""
 _PIVOT = 1e-9
-"""Least pivot of K over its own diagonal entry: below it another method decides whether K is singular."""
+"""Minimum pivot of K over its diagonal entry: below it another method decides whether K is singular."""
 _SIZES = ("designs", "stride", "bodies", "links", "edges", "updates", "numbers", "parts", "m", "count", "rounds", "single")
 _TABLES = ("link", "range", "later", "heavy", "product", "update", "mirror", "inertia", "start")
 _ARRAYS = ("force", "numbers_")
@@ -49,10 +49,10 @@ class _Task(ctypes.Structure):
 
 @functools.cache
 def kernel() -> ctypes.CDLL | None:
-    """The library; `None` where there is none.
+    """Load the library, or return `None` if there is none.
 
-    >>> found = kernel()
-    >>> found is None or found.flexstage_width() in (2, 4, 8)
+    >>> result = kernel()
+    >>> result is None or result.flexstage_width() in (2, 4, 8)
     True
     """
     library = kernel_library(SOURCE)
@@ -65,7 +65,7 @@ SOURCE = Path(__file__).with_name("kernel.c")
 
 
 def kernel_name() -> str:
-    """What iterates here: the library by its lanes and content, or none. With the same name, results are the same to the bit.
+    """Name the library by its lanes and content, or none. Equal names give results that are equal to the bit.
 
     >>> kernel_name()[:9] in {"no kernel", "kernel av", "kernel ss", "kernel ne", "kernel pl"}
     True
@@ -75,9 +75,9 @@ def kernel_name() -> str:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """What iteration begins with: the inertial forces (6 bodies, m) of the family's own modes, a `shift` amid their eigenvalues.
+    """Start values of the iteration: inertial forces (6 bodies, m) of the nominal modes, and a `shift` between their eigenvalues.
 
-    The first `needed` are found one by one.
+    The first `needed` modes are computed one by one.
     """
 
     force: Array
@@ -87,7 +87,7 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """What the kernel is called with: the `task`, the arrays that it points to, and those among them that it writes."""
+    """Arguments of a kernel call: the `task`, the arrays that it points to, and the arrays that it writes."""
 
     task: ctypes.Structure
     arrays: Mapping[str, Array]
@@ -95,7 +95,7 @@ class Job:
 
 
 def solve_designs(library: ctypes.CDLL, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> tuple[Array, Array]:
-    """Eigenvalues (b, k) of the platform's modes of designs by their numbers (numbers, b), ascending, and where they are proved (b,)."""
+    """Compute the platform eigenvalues (b, k) of designs by their numbers (numbers, b), ascending, and which designs (b,) are proven."""
     job, count = kernel_job(library.flexstage_width(), tables, numbers, start, choice), numbers.shape[1]
     if library.flexstage_modes(ctypes.byref(job.task)):
         job.results["good"][:] = 0
@@ -103,9 +103,9 @@ def solve_designs(library: ctypes.CDLL, tables: Mapping[str, Array], numbers: Ar
 
 
 def kernel_job(width: int, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> Job:
-    """The designs for a kernel of so many lanes."""
+    """Build the kernel call of the designs for this number of lanes."""
     count = numbers.shape[1]
-    stride = -(-count // width) * width + 8  # rows a power of two apart would be on the same lines of the cache
+    stride = -(-count // width) * width + 8  # rows a power of two apart would share cache lines
     arrays = {**tables, "force": np.ascontiguousarray(start.force), "numbers_": np.ascontiguousarray(numbers)}
     results = {"values": np.empty((choice.count, stride)), "good": np.zeros(stride, dtype=np.int64)}
     sizes = {
@@ -128,13 +128,13 @@ def kernel_job(width: int, tables: Mapping[str, Array], numbers: Array, start: S
 
 
 def kernel_tables(topology: Topology, graph: Elimination) -> dict[str, Array]:
-    """What the kernel is given of a topology: arrays of whole numbers by name."""
+    """Build the integer tables of a topology for the kernel, by name."""
     place = {body: number for number, body in enumerate(graph.order)} | {GROUNDED: -1}
     edge = {pair: number for number, pair in enumerate(graph.edges)}
     ends = [(part, place[one], place[two]) for part, one, two in topology.links]
     link = [(part, one, two, edge.get((min(one, two), max(one, two)), -1)) for part, one, two in ends]
     firsts, bodies = [first for first, _ in graph.edges], np.arange(len(graph.order) + 1)
-    found = {
+    tables = {
         "link": link,
         "range": np.searchsorted(firsts, bodies),
         "later": [later for _, later in graph.edges],
@@ -145,4 +145,4 @@ def kernel_tables(topology: Topology, graph: Elimination) -> dict[str, Array]:
         "inertia": topology.starts["inertia"] + 10 * np.array(graph.order),
         "start": [topology.starts[kind] for kind in SHAPES if kind != "inertia"],
     }
-    return {name: np.ascontiguousarray(table, dtype=np.int64) for name, table in found.items()}
+    return {name: np.ascontiguousarray(table, dtype=np.int64) for name, table in tables.items()}

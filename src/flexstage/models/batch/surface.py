@@ -1,8 +1,9 @@
-"""Numbers of designs as polynomials of what varies, over stated ranges: fitted once, checked, then evaluated for any number of designs.
+"""Polynomial fit of the numbers of designs over specified ranges: fitted once, checked, then evaluated for any number of designs.
 
-Products of Chebyshev polynomials of the variables that a number depends on. How high they must go along each variable is found on two
-lines; terms of which all orders together are high are left out, as many as the other designs allow. Coefficients by least squares at
-random places. What is not smooth is not fitted: outlines that overlap otherwise over the ranges.
+Terms are products of Chebyshev polynomials of the variables that a number depends on. Two lines per variable determine the degrees; terms
+with a high total degree are dropped as far as the validation designs permit. Coefficients follow from least squares at random points.
+
+Functions that are not smooth are not fitted, e.g. outlines whose overlaps change over the ranges.
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ from flexstage.models.batch.family import INERTIA_ENTRIES, Family, numbers_of
 from flexstage.models.batch.graph import SHAPES
 
 TOLERANCE = 1e-10
-"""Largest error of a number over the largest value it takes."""
+"""Maximum error of a number over its maximum value."""
 _TAIL = 1e-12
 _NODES = 17
 _TERMS = 1500
 _REACH = (1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0)
 _LINEAR = 0.2
-"""What a variable costs in which a number is linear: a modulus multiplies all other terms, and is worth it."""
+"""Weight of a variable with a linear effect: such a variable (a modulus) multiplies all other terms."""
 _TOGETHER = 256
-"""Designs evaluated at once, always as many: so that no bit of one depends on how many there are."""
+"""Designs per evaluation, constant so that the result of one design does not depend on their number."""
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Numbers (`rows` of all) of the same `variables` (d,): Chebyshev `degrees` (terms, d) and `coefficients` (terms, rows)."""
+    """Fit of numbers (`rows`) that depend on the same `variables` (d,): Chebyshev `degrees` (terms, d), `coefficients` (terms, rows)."""
 
     variables: Array
     degrees: Array
@@ -38,7 +39,7 @@ class Piece:
     rows: Array
 
     def basis(self, table: Array) -> Array:
-        """Products (terms, designs) of its polynomials (degree, P, designs)."""
+        """Products (terms, designs) of the polynomials (degree, P, designs)."""
         result = np.ones((len(self.degrees), table.shape[-1]))
         for place, variable in enumerate(self.variables):
             result *= table[self.degrees[:, place], variable]
@@ -47,9 +48,9 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Every number of the designs of a family, for values from `low` to `high` (P,); `fixed` (numbers,) are those that do not vary.
+    """Every number of the designs of a family, for values from `low` to `high` (P,); `fixed` (numbers,) are the constant ones.
 
-    `error` is the largest one at random designs, over the largest value. Below the diagonal of symmetric matrices numbers are `fixed`, too.
+    `error` is the maximum at random designs, over the maximum value. Numbers below the diagonal of symmetric matrices are `fixed`, too.
     """
 
     low: Array
@@ -59,11 +60,11 @@ class Surface:
     error: float
 
     def holds(self, values: Array) -> Array:
-        """Which designs (b, P) lie within the ranges."""
+        """Whether designs (b, P) are within the ranges."""
         return np.asarray(((values >= self.low) & (values <= self.high)).all(axis=1))
 
     def numbers(self, values: Array) -> Array:
-        """The numbers (numbers, b), as `numbers_of` gives them."""
+        """The numbers (numbers, b), as from `numbers_of`."""
         result = np.repeat(self.fixed[:, None], len(values), axis=1)
         middle, half = _ranges(self.low, self.high)
         highest = max((int(piece.degrees.max(initial=0)) for piece in self.pieces), default=0)
@@ -86,14 +87,14 @@ def _chebyshev(x: Array, highest: int) -> Array:
 
 
 def surface(family: Family, low: Array, high: Array) -> Surface | None:
-    """Fit the numbers of a family for values from `low` to `high` (P,); `None` where too many terms would be needed.
+    """Fit the numbers of a family for values from `low` to `high` (P,); `None` if too many terms are needed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.family import family
     >>> stage = family(double_triangle(), ("parts.neck.thickness", "materials.steel.young"))
-    >>> found = surface(stage, 0.95 * stage.nominal, 1.05 * stage.nominal)
+    >>> result = surface(stage, 0.95 * stage.nominal, 1.05 * stage.nominal)
     >>> value, upper = np.array([[1.5e-3, 205e9]]), stage.topology.mirror >= np.arange(len(stage.topology.mirror))
-    >>> bool(np.allclose(found.numbers(value)[upper], numbers_of(stage, value)[upper], rtol=1e-10, atol=1e-12))
+    >>> bool(np.allclose(result.numbers(value)[upper], numbers_of(stage, value)[upper], rtol=1e-10, atol=1e-12))
     True
     """
     fixed = numbers_of(family, family.nominal[None])[:, 0]
@@ -113,44 +114,44 @@ def surface(family: Family, low: Array, high: Array) -> Surface | None:
     pieces: list[Piece] = []
     for variables, rows in groups.items():
         highest = degrees[np.array(variables)][:, rows].max(axis=1)
-        found = _fit((np.array(variables), np.array(rows)), highest, (inner, fitted[rows], outer, met[rows]), scale[rows])
-        if found is None:
+        fit = _fit((np.array(variables), np.array(rows)), highest, (inner, fitted[rows], outer, met[rows]), scale[rows])
+        if fit is None:
             return None
-        pieces.append(found[0])
-        worst = max(worst, found[1])
+        pieces.append(fit[0])
+        worst = max(worst, fit[1])
     return Surface(low, high, fixed, tuple(pieces), worst) if worst <= TOLERANCE else None
 
 
 def _ranges(low: Array, high: Array) -> tuple[Array, Array]:
-    """Middles and halves of the ranges; a number that does not vary has a half that is not zero all the same."""
+    """Midpoints and half widths of the ranges; a constant number gets a non-zero half width."""
     half = 0.5 * (high - low)
     return 0.5 * (low + high), np.where(half > 0.0, half, 1.0)
 
 
 def _scale(family: Family, numbers: Array) -> Array:
-    """What the error of each number is compared with: the longest arm, one for axes, and the root of both diagonal entries in matrices."""
-    largest, found, start = np.max(np.abs(numbers), axis=1), [], 0
+    """Error scale of each number: the longest arm, one for axes, and the root of both diagonal entries in matrices."""
+    largest, scales, start = np.max(np.abs(numbers), axis=1), [], 0
     begin, end = family.topology.starts["first"], family.topology.starts["inertia"]
     for kind, count in family.topology.counts.items():
         for _ in range(count):
             own = largest[start : start + int(np.prod(SHAPES[kind]))]
             start += len(own)
             if kind in {"first", "second"}:
-                found.append(np.full(3, float(np.max(largest[begin:end]))))
+                scales.append(np.full(3, float(np.max(largest[begin:end]))))
             elif kind == "turn":
-                found.append(np.ones(9))
+                scales.append(np.ones(9))
             else:
                 rows, columns = INERTIA_ENTRIES if kind == "inertia" else np.divmod(np.arange(len(own)), SHAPES[kind][0])
                 square = dict(zip(zip(rows.tolist(), columns.tolist(), strict=True), own.tolist(), strict=True))
                 root = np.sqrt(
                     [square[0, 0] if place < 3 and kind == "inertia" else square[place, place] for place in range(max(rows) + 1)]
                 )
-                found.append(np.where(root[rows] * root[columns] > 0.0, root[rows] * root[columns], 1.0))
-    return np.concatenate(found)
+                scales.append(np.where(root[rows] * root[columns] > 0.0, root[rows] * root[columns], 1.0))
+    return np.concatenate(scales)
 
 
 def _degrees(family: Family, ranges: tuple[Array, Array], scale: Array) -> Array:
-    """Degree (P, numbers) that each number needs along each variable: where its series is at rounding, on two lines."""
+    """Degree (P, numbers) of each number along each variable: where its series reaches rounding, on two lines."""
     middle, half = ranges
     count = len(middle)
     nodes = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
@@ -165,7 +166,7 @@ def _degrees(family: Family, ranges: tuple[Array, Array], scale: Array) -> Array
 
 
 def _fit(at: tuple[Array, Array], highest: Array, known: tuple[Array, Array, Array, Array], scale: Array) -> tuple[Piece, float] | None:
-    """The piece of (variables, rows) with the fewest terms that meets the other designs, and its error there."""
+    """The fit of (variables, rows) with the fewest terms that meets the validation designs, and its error there."""
     variables, rows = at
     inner, fitted, outer, met = known
     for reach in _REACH:
@@ -185,7 +186,7 @@ def _fit(at: tuple[Array, Array], highest: Array, known: tuple[Array, Array, Arr
 
 
 def _terms(highest: list[int], reach: float) -> Iterator[tuple[int, ...]]:
-    """Degrees (d,) with the sum of degree over highest within the reach."""
+    """Degrees (d,) whose sum of degree over maximum degree is within the limit."""
     if not highest:
         yield ()
         return

@@ -1,1 +1,1 @@
-"""The currency of all models: kinematics and linear models, with their static, eigen and frequency solves."""
+"""Linear models and kinematics, the common result of all models, with static, eigenvalue and frequency-response solutions."""

@@ -1,9 +1,12 @@
-"""Elimination of the constraints of a large stage, body by body: the work grows with the stage, not with its square.
+"""Block elimination of the constraints of a large stage, body by body: the cost grows linearly with the stage, not quadratically.
 
-A body's rows are turned (pivoted QR of its six columns) into some that give its coordinates from those of its neighbours, and others in
-which it does not occur and that bind the neighbours to one another. Coordinates that no row holds are idle motions; rows that vanish are
-redundant. Bodies with the fewest neighbours go first, where these are alike such that fewest wait for one another: idle motions then take
-few bodies along. The platform and the strokes are kept.
+A pivoted QR of the six columns of a body splits its rows. Some give its coordinates from the coordinates of its neighbours; the others do
+not contain the body and constrain the neighbours only.
+
+Coordinates without a row are free internal modes; zero rows are redundant constraints.
+
+Bodies with the fewest neighbours come first, then those whose neighbours wait least, so that free internal modes involve few bodies. The
+platform and the strokes are kept.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ _RANK = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class _Group:
-    """Rows (m, c) over some `blocks` of coordinates, and what each is made of: `shares` (m, k) of the constraints `made` (k,)."""
+    """Rows (m, c) over some `blocks` of coordinates, as combinations `shares` (m, k) of the constraints `made` (k,)."""
 
     blocks: tuple[int, ...]
     rows: Array
@@ -34,7 +37,7 @@ class _Group:
 
 @dataclass(frozen=True, eq=False)
 class _Given:
-    """Coordinates of a block: `free` ones are idle, the `bound` ones follow from these and from `others`' (one after the other)."""
+    """Coordinates of a block: `free` ones are idle; the `bound` ones follow from these and from the coordinates of `others`, in order."""
 
     free: Array
     bound: Array
@@ -45,10 +48,11 @@ class _Given:
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """Motions that fulfil the constraints.
+    """Motions that satisfy the constraints.
 
-    `last` is the elimination of platform and strokes, `idle` (k rows, N) one motion for every coordinate that nothing holds;
-    `redundant` the numbers of the constraints of each state of self-stress.
+    `last` is the elimination of platform and strokes, `idle` (k rows, N) one free internal mode per unconstrained coordinate.
+
+    `redundant` has the numbers of the constraints of each self-stress state.
     """
 
     last: Elimination
@@ -57,11 +61,11 @@ class Solved:
 
 
 def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> Solved:
-    """Eliminate constraints, each (1, N), over the twists of `bodies` (the platform's first) and the strokes; `scale` (N,) compares them.
+    """Eliminate constraints (1, N) over the twists of `bodies` (the platform's first) and the strokes, comparable by `scale` (N,).
 
     >>> rows = [Sparse(np.array([0, 6]), np.array([[1.0, -1.0]]), 12), Sparse(np.array([6]), np.array([[1.0]]), 12)]
-    >>> found = eliminate_blocks([*rows, rows[1]], np.ones(12), bodies=2, strokes=0)
-    >>> len(found.last.independent), len(found.idle), found.redundant
+    >>> result = eliminate_blocks([*rows, rows[1]], np.ones(12), bodies=2, strokes=0)
+    >>> len(result.last.independent), len(result.idle), result.redundant
     (5, 5, ((1, 2),))
     """
     starts = np.concatenate([6 * np.arange(bodies), 6 * bodies + np.arange(strokes + 1)])
@@ -70,31 +74,31 @@ def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes:
     for number, group in groups.items():
         for block in group.blocks:
             near[block].add(number)
-    given: dict[int, _Given] = {}
+    solutions: dict[int, _Given] = {}
     stresses: list[tuple[Array, Array]] = []
     depth = dict.fromkeys(near, 0)
     heap = [(_degree(groups, near[block]), block) for block in range(1, bodies)]
     heapq.heapify(heap)
     while heap:
         cost, block = heapq.heappop(heap)
-        now = depth[block] + _degree(groups, near[block])
-        if cost != now:
-            heapq.heappush(heap, (now, block))
+        current = depth[block] + _degree(groups, near[block])
+        if cost != current:
+            heapq.heappush(heap, (current, block))
             continue
         own = _take(groups, near, block)
-        given[block], left = _eliminate(block, _join(own, block, starts), starts, stresses)
-        for other in given[block].others:
+        solutions[block], left = _eliminate(block, _join(own, block, starts), starts, stresses)
+        for other in solutions[block].others:
             depth[other] = max(depth[other], depth[block] + 1)
         if left is not None:
             key = len(rows) + block
             groups[key] = left
             for other in left.blocks:
                 near[other].add(key)
-    return _solved(list(groups.values()), given, stresses, scale=scale, starts=starts, bodies=bodies)
+    return _solved(list(groups.values()), solutions, stresses, scale=scale, starts=starts, bodies=bodies)
 
 
 def _take(groups: dict[int, _Group], near: dict[int, set[int]], block: int) -> list[_Group]:
-    """The groups of rows of a block, which are no longer there."""
+    """Remove and return the groups of rows of a block."""
     numbers = sorted(near.pop(block))
     own = [groups.pop(number) for number in numbers]
     for other in {each for group in own for each in group.blocks} - {block}:
@@ -103,20 +107,20 @@ def _take(groups: dict[int, _Group], near: dict[int, set[int]], block: int) -> l
 
 
 def _group(row: Sparse, number: int, scale: Array, starts: Array) -> _Group:
-    """A constraint by its blocks, of unit size."""
-    found = np.unique(np.searchsorted(starts, row.columns, side="right") - 1)
-    widths, places = _places(found, starts)
+    """A constraint by its blocks, scaled to unit size."""
+    touched = np.unique(np.searchsorted(starts, row.columns, side="right") - 1)
+    widths, places = _places(touched, starts)
     values = np.zeros((1, int(widths.sum())))
     blocks = np.searchsorted(starts, row.columns, side="right") - 1
-    offset = dict(zip(found.tolist(), places.tolist(), strict=True))
+    offset = dict(zip(touched.tolist(), places.tolist(), strict=True))
     for column, block, value in zip(row.columns, blocks, row.values[0], strict=True):
         values[0, offset[int(block)] + column - starts[block]] += value * scale[column]
     size = float(np.linalg.norm(values))
-    return _Group(tuple(found.tolist()), values / (size or 1.0), np.array([number]), np.ones((1, 1)))
+    return _Group(tuple(touched.tolist()), values / (size or 1.0), np.array([number]), np.ones((1, 1)))
 
 
 def _places(blocks: Array, starts: Array) -> tuple[Array, Array]:
-    """Widths of blocks, and where each begins when they stand side by side."""
+    """Widths of blocks, and their offsets in concatenation."""
     widths = starts[blocks + 1] - starts[blocks]
     return widths, (np.cumsum(widths) - widths).astype(int)
 
@@ -126,9 +130,9 @@ def _degree(groups: dict[int, _Group], numbers: set[int]) -> int:
 
 
 def _join(groups: Sequence[_Group], first: int | None, starts: Array) -> _Group:
-    """Groups one below the other, over all their blocks, one of them first."""
-    rest = sorted({block for group in groups for block in group.blocks} - {first})
-    blocks = np.array([*([] if first is None else [first]), *rest], dtype=int)
+    """Stack groups over the union of their blocks, with one of them first."""
+    others = sorted({block for group in groups for block in group.blocks} - {first})
+    blocks = np.array([*([] if first is None else [first]), *others], dtype=int)
     made = np.unique(np.concatenate([group.made for group in groups])) if groups else np.zeros(0, dtype=int)
     widths, places = _places(blocks, starts)
     offset = dict(zip(blocks.tolist(), places.tolist(), strict=True))
@@ -136,19 +140,19 @@ def _join(groups: Sequence[_Group], first: int | None, starts: Array) -> _Group:
     rows, shares = np.zeros((count, int(widths.sum()))), np.zeros((count, len(made)))
     row = 0
     for group in groups:
-        here = slice(row, row + len(group.rows))
+        span = slice(row, row + len(group.rows))
         column = 0
         for block in group.blocks:
             width = int(starts[block + 1] - starts[block])
-            rows[here, offset[block] : offset[block] + width] = group.rows[:, column : column + width]
+            rows[span, offset[block] : offset[block] + width] = group.rows[:, column : column + width]
             column += width
-        shares[here, np.searchsorted(made, group.made)] = group.shares
+        shares[span, np.searchsorted(made, group.made)] = group.shares
         row += len(group.rows)
     return _Group(tuple(blocks.tolist()), rows, made, shares)
 
 
 def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Array, Array]]) -> tuple[_Given, _Group | None]:
-    """A body's coordinates from its rows, and the rows in which it does not occur; those that vanish are states of self-stress."""
+    """Body coordinates from its rows, and the rows that do not contain it; zero rows are self-stress states."""
     width = int(starts[block + 1] - starts[block])
     others = group.blocks[1:]
     if not len(group.rows):
@@ -156,18 +160,18 @@ def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Ar
         return _Given(every, every[:0], np.zeros((0, width)), (), np.zeros((0, 0))), None
     turn, triangle, order = scipy.linalg.qr(group.rows[:, :width], pivoting=True)
     rank = int(np.sum(np.abs(np.diag(triangle)) > _RANK))
-    rest, shares = turn.T @ group.rows[:, width:], turn.T @ group.shares
-    solved = -np.linalg.solve(triangle[:rank, :rank], np.concatenate([triangle[:rank, rank:], rest[:rank]], axis=1))
+    remainder, shares = turn.T @ group.rows[:, width:], turn.T @ group.shares
+    solved = -np.linalg.solve(triangle[:rank, :rank], np.concatenate([triangle[:rank, rank:], remainder[:rank]], axis=1))
     free = width - rank
-    given = _Given(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
-    vanished = np.max(np.abs(rest[rank:]), axis=1, initial=0.0) < _RANK
+    solution = _Given(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
+    vanished = np.max(np.abs(remainder[rank:]), axis=1, initial=0.0) < _RANK
     stresses += [(group.made, share) for share in shares[rank:][vanished]]
-    kept = rest[rank:][~vanished]
-    return given, _Group(others, kept, group.made, shares[rank:][~vanished]) if len(kept) else None
+    kept = remainder[rank:][~vanished]
+    return solution, _Group(others, kept, group.made, shares[rank:][~vanished]) if len(kept) else None
 
 
 def _solved(
-    groups: list[_Group], given: dict[int, _Given], stresses: list[tuple[Array, Array]], *, scale: Array, starts: Array, bodies: int
+    groups: list[_Group], solutions: dict[int, _Given], stresses: list[tuple[Array, Array]], *, scale: Array, starts: Array, bodies: int
 ) -> Solved:
     kept = [0, *range(bodies, len(starts) - 1)]
     columns = np.concatenate([np.arange(starts[block], starts[block + 1]) for block in kept])
@@ -180,31 +184,31 @@ def _solved(
         sizes = np.where(sizes > 0.0, sizes, 1.0)
         stresses += [(whole.made, state @ whole.shares) for state in null_space((rows / sizes[:, None]).T).T / sizes]
     last = eliminate(rows / scale[columns], scale[columns], keep=tuple(range(6)))
-    return Solved(last, tuple(_idle_motions(given, starts, scale)), _named(stresses))
+    return Solved(last, tuple(_idle_motions(solutions, starts, scale)), _named(stresses))
 
 
-def _idle_motions(given: dict[int, _Given], starts: Array, scale: Array) -> list[Sparse]:
-    """A motion for every free coordinate: those that follow from it, and from these, move with it."""
-    names = list(given)
+def _idle_motions(solutions: dict[int, _Given], starts: Array, scale: Array) -> list[Sparse]:
+    """A motion for every free coordinate, with all coordinates that follow from it."""
+    names = list(solutions)
     place = {block: number for number, block in enumerate(names)}
     follow: dict[int, list[int]] = {}
-    for block, found in given.items():
-        for other in found.others:
+    for block, solution in solutions.items():
+        for other in solution.others:
             follow.setdefault(other, []).append(block)
     motions: list[Sparse] = []
-    for block, found in given.items():
-        if not len(found.free):
+    for block, solution in solutions.items():
+        if not len(solution.free):
             continue
-        moved = {block: np.zeros((int(starts[block + 1] - starts[block]), len(found.free)))}
-        moved[block][found.free] = np.eye(len(found.free))
-        moved[block][found.bound] = found.own
+        moved = {block: np.zeros((int(starts[block + 1] - starts[block]), len(solution.free)))}
+        moved[block][solution.free] = np.eye(len(solution.free))
+        moved[block][solution.bound] = solution.own
         heap = [-place[each] for each in follow.get(block, ())]
         heapq.heapify(heap)
         while heap:
             each = names[-heapq.heappop(heap)]
             if each in moved:
                 continue
-            motion = _following(given[each], moved, starts, each, len(found.free))
+            motion = _following(solutions[each], moved, starts, each, len(solution.free))
             if np.any(np.abs(motion) > _RANK):
                 moved[each] = motion
                 for later in follow.get(each, ()):
@@ -215,20 +219,20 @@ def _idle_motions(given: dict[int, _Given], starts: Array, scale: Array) -> list
     return motions
 
 
-def _following(found: _Given, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
-    """How a block moves with those that have moved, its own free coordinates at rest."""
+def _following(solution: _Given, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
+    """Motion of a block by the blocks that have moved, its own free coordinates at zero."""
     result = np.zeros((int(starts[block + 1] - starts[block]), count))
     column = 0
-    for other in found.others:
+    for other in solution.others:
         width = int(starts[other + 1] - starts[other])
         if other in moved:
-            result[found.bound] += found.rest[:, column : column + width] @ moved[other]
+            result[solution.bound] += solution.rest[:, column : column + width] @ moved[other]
         column += width
     return result
 
 
 def _named(stresses: list[tuple[Array, Array]]) -> tuple[tuple[int, ...], ...]:
-    """The constraints of each state of self-stress; states that have some in common are parted as far as they can be."""
+    """The constraints of each self-stress state; states with common constraints are separated if possible."""
     if not stresses:
         return ()
     parts: list[tuple[int, ...]] = []
@@ -242,7 +246,7 @@ def _named(stresses: list[tuple[Array, Array]]) -> tuple[tuple[int, ...], ...]:
 
 
 def _connected(sets: list[Array]) -> list[list[int]]:
-    """Numbers of sets by those that have members in common, directly or by way of others."""
+    """Number sets by connected components of common members."""
     owners = np.repeat(np.arange(len(sets)), [len(each) for each in sets])
     members = len(sets) + np.concatenate(sets)
     size = int(np.max(members, initial=len(sets) - 1)) + 1

@@ -1,8 +1,9 @@
-"""Inputs and outputs of a stage, by name and in order, as every elastic model gives them: so their answers can be compared by name.
+"""Inputs and outputs of a stage, with common names and order for all elastic models, so that results compare by name.
 
-Inputs: strokes and forces of the actuators; wrenches on the platform and the named points. Outputs: twists of the platform, the points and
-all other bodies; readings of the gauges; stress resultants of every link, at its centre in its frame; wrenches at the ports of
-superelements, in their frames.
+Inputs: strokes and forces of the actuators; wrenches on the platform and the named points.
+
+Outputs: twists of the platform, the points and all other bodies; gauge readings; stress resultants of every link, at its centre in its
+frame; wrenches at the ports of superelements, in their frames.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a twist is read or a wrench acts: a point (..., 3) [m] of a body, in the stage's axes."""
+    """Point (..., 3) [m] of a body where a twist is read or a wrench acts, in stage axes."""
 
     body: str
     point: Array
@@ -30,14 +31,14 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """How a model's coordinates move the bodies: the twist (..., 6, n) of each at its reference point, and of one `at` a frame."""
+    """Body motions by the coordinates of a model: the twist (..., 6, n) of each at its reference point, and of one `at` a frame."""
 
     bodies: Mapping[str, Array]
     at: Callable[[str, Frame], Array]
 
 
 def wrench_places(assembly: Assembly) -> dict[str, Place]:
-    """Where wrenches act: the platform's reference point and the named points.
+    """List the points of wrenches: the platform's reference point and the named points.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -49,7 +50,7 @@ def wrench_places(assembly: Assembly) -> dict[str, Place]:
 
 
 def twist_places(assembly: Assembly) -> dict[str, Place]:
-    """Where twists are read: where wrenches act, and the reference points of all other bodies.
+    """List the points of twists: the points of wrenches, and the reference points of all other bodies.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -61,7 +62,7 @@ def twist_places(assembly: Assembly) -> dict[str, Place]:
 
 
 def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
-    """Strokes and forces by actuator, then wrenches by place.
+    """List the inputs: strokes and forces by actuator, then wrenches by point.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -73,12 +74,12 @@ def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
 
 
 def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
-    """Twists by place, gauges, stress resultants by link, wrenches by port (`frame.left.fx`): what the body there exerts on the element.
+    """List the outputs: twists by point, gauges, stress resultants by link, wrenches of bodies on ports (`frame.left.fx`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
-    >>> found = output_channels(expand(parallelogram()))
-    >>> found[0].name, found[-1].name, len(found) == 6 * (4 + 5) + 1  # places, links, a gauge
+    >>> result = output_channels(expand(parallelogram()))
+    >>> result[0].name, result[-1].name, len(result) == 6 * (4 + 5) + 1  # places, links, a gauge
     ('platform.x', 'B/front.mz', True)
     """
     return (
@@ -89,7 +90,7 @@ def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
 
 
 def wrench_owners(assembly: Assembly) -> tuple[str, ...]:
-    """What passes a wrench that is an output: the links, then the ports of superelements.
+    """List the elements whose wrenches are outputs: the links, then the ports of superelements.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -104,7 +105,7 @@ def _components(owners: Iterable[str], names: tuple[str, ...], units: tuple[str,
 
 
 def absolute(assembly: Assembly) -> Array:
-    """Which outputs (p,) change when everything moves with the ground: the twists do, gauges and links do not feel it.
+    """Return which outputs (p,) change under a rigid motion with the ground: twists do, gauges and links do not.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -115,7 +116,7 @@ def absolute(assembly: Assembly) -> Array:
 
 
 def place_twists(places: Mapping[str, Place], motions: Motions) -> list[Array]:
-    """The twist (..., 6, n) at every place, in the stage's axes.
+    """Compute the twist (..., 6, n) at every point, in stage axes.
 
     >>> still = Motions({"platform": np.zeros((6, 2))}, lambda body, frame: np.ones((6, 2)))
     >>> places = {"platform": Place("platform", np.zeros(3)), "corner": Place("platform", np.ones(3))}
@@ -129,7 +130,7 @@ def place_twists(places: Mapping[str, Place], motions: Motions) -> list[Array]:
 
 
 def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
-    """The reading (..., 1, n) of every gauge: bodies' motions against those of their bases, each along or about an axis, with its weight.
+    """Compute the reading (..., 1, n) of every gauge: body motions relative to their bases, along or about an axis, with weights.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -141,20 +142,20 @@ def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
 
 
 def reading(gauge: PlacedGauge, at: Callable[[str, Frame], Array]) -> Array:
-    """What a gauge reads (..., 1, n) of the twists (..., 6, n) of bodies at frames."""
-    first, *rest = (see(sight, at) for sight in gauge.sights)
-    return sum(rest, first)
+    """Compute the gauge reading (..., 1, n) of the twists (..., 6, n) of bodies at frames."""
+    first, *others = (see(sight, at) for sight in gauge.sights)
+    return sum(others, first)
 
 
 def see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
-    """What one sight of a gauge, or a stop, adds to its reading (..., 1, n), its weight counted."""
+    """Compute the contribution (..., 1, n) of one weighted line of sight of a gauge, or of a stop."""
     rows = slice(sight.component, sight.component + 1)
-    seen = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
-    return np.asarray(sight.weight)[..., None, None] * seen
+    motion = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
+    return np.asarray(sight.weight)[..., None, None] * motion
 
 
 def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:
-    """What every input imposes on each link (..., r, m) that strokes: its stroke the deformation (..., r) stated by link, others nothing.
+    """Compute the deformation (..., r, m) that every input imposes: a stroke imposes the deformation (..., r) of its link, others nothing.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -167,7 +168,7 @@ def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> di
 
 
 def exerted_wrenches(assembly: Assembly) -> dict[str, Array]:
-    """The wrench (..., 6, m) that every input exerts on the second body of each link with a force actuator, in the link's frame.
+    """Compute the wrench (..., 6, m) of every input on the second body of each link with a force actuator, in the link frame.
 
     The opposite acts on the first body, both at the link's centre.
 

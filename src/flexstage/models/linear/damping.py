@@ -1,4 +1,4 @@
-"""Damping of a linear model: the law that applies, and what it means for each mode."""
+"""Damping of a linear model: the applicable damping law, and the modal damping ratios."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.models.linear.model import LinearModel
 
 
 def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
-    """The damping asked for, else the one the model states. Raises `DesignError` where neither exists: damping is never implied.
+    """Return the requested damping, else the one of the model. Raises `DesignError` if neither exists: there is no default damping.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -24,16 +24,16 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
     if law is None:
         raise refuse(
             "damping",
-            "the design states no damping, and a response at a resonance is nothing but damping",
+            "the design states no damping, which determines the response at a resonance",
             'State it in the design, for example damping = { law = "modal", ratio = 0.01 }, or pass damping=ModalDamping(0.01)',
         )
     return law
 
 
 def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Damping ratio zeta_r (..., k) of each mode: that of the law, and what dampers add, phi^T D phi / (2 omega_r).
+    """Compute the damping ratio zeta_r (..., k) of each mode: of the law, plus the dampers, phi^T D phi / (2 omega_r).
 
-    The latter is what a mode alone would have: dampers couple modes, which `transfer` and `state_space` reckon with.
+    The latter is the uncoupled approximation: dampers couple modes, as `transfer` and `state_space` include.
     """
     return law_ratios(model, solved, damping) + _diagonal(viscous_coupling(model, solved)) / (2.0 * np.sqrt(solved.values))
 
@@ -43,7 +43,7 @@ def _diagonal(matrix: Array) -> Array:
 
 
 def viscous_coupling(model: LinearModel, solved: Eigen) -> Array:
-    """Phi^T D Phi (..., k, k): what the dampers of parts resist in modal coordinates [1/s].
+    """Compute Phi^T D Phi (..., k, k), the dampers of parts in modal coordinates [1/s].
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.eigen import eigen
@@ -60,10 +60,12 @@ def viscous_coupling(model: LinearModel, solved: Eigen) -> Array:
 
 
 def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Damping ratio zeta_r (..., k) that a law gives each mode.
+    """Compute the damping ratio zeta_r (..., k) of each mode by a law.
 
-    Modal: as stated. Rayleigh: zeta_r = (alpha/omega_r + beta omega_r)/2, exact. Structural: zeta_r = sum_p eta_p phi^T K_p phi / (2
-    omega_r^2), the *equivalent* ratio by modal strain energy (Ungar and Kerwin 1962), right at the resonance for small loss factors.
+    - Modal: as specified.
+    - Rayleigh: zeta_r = (alpha/omega_r + beta omega_r)/2, exact.
+    - Structural: zeta_r = sum_p eta_p phi^T K_p phi / (2 omega_r^2), the *equivalent* ratio by modal strain energy (Ungar and Kerwin 1962),
+      right at resonance for small loss factors.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.mechanism import StructuralDamping
@@ -89,7 +91,7 @@ def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
 
 
 def structural_stiffness(model: LinearModel) -> Array:
-    """K* = sum K_p (1 + j eta_p), complex (..., n, n): each part with the loss factor of its own material.
+    """Compute K* = sum K_p (1 + j eta_p), complex (..., n, n): each part with the loss factor of its material.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

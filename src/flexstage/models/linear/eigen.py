@@ -1,4 +1,4 @@
-"""Undamped eigenvalue solves of a linear model."""
+"""Undamped eigenvalue solutions of a linear model."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.models.linear.model import LinearModel
 _MASSLESS = 1e-13
 _CLUSTER = 1e-5
 WIDE = 128
-"""Coordinates from which on a triangular solution costs less than numpy's for all matrices at once."""
+"""Number of coordinates above which a triangular solution is faster than numpy's for all matrices at once."""
 ALL_MODES = 900
-"""Freedoms up to which all modes of a sparse model are worked out where its lowest are asked for."""
+"""Number of coordinates up to which all modes of a sparse model are computed if the lowest are requested."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +34,12 @@ class Eigen:
 
 
 def eigen(model: LinearModel) -> Eigen:
-    """Eigenvalues and shapes of the undamped model (Eq. 28 of Shin & Moon); modes without inertia are left out.
+    """Compute eigenvalues and shapes of the undamped model (Eq. 28 of Shin & Moon), without modes that have no inertia.
 
-    Solved as K^-1 M with K = L L^T, so M may be singular. Sign rule: the largest component, rotations weighted with 0.1 m, is positive. A
-    design whose K is not positive definite gives NaN. Raises `DesignError` for designs of a batch that have other numbers of modes, and for
-    a large stage, of which `lowest_modes` gives some.
+    Solved as K^-1 M with K = L L^T, so that M may be singular. Sign rule: the largest component, rotations weighted with 0.1 m, is
+    positive. A design whose K is not positive definite gives NaN.
+
+    Raises `DesignError` for batch designs with other numbers of modes, and for a large stage, for which `lowest_modes` gives some.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -52,7 +53,7 @@ def eigen(model: LinearModel) -> Eigen:
 
 @SESSION.keep(2)
 def _kept(model: LinearModel) -> Eigen:
-    """Of one design, kept for what asks the same model next: modes, frequencies of a response, the response itself."""
+    """Result of one design, cached for further calls with the same model: modes, response frequencies, response."""
     return _solve(model)
 
 
@@ -61,7 +62,7 @@ def _solve(model: LinearModel) -> Eigen:
 
 
 def eigenvalues(model: LinearModel) -> Array:
-    """The values alone of `eigen`, faster; ascending.
+    """Compute only the values of `eigen`, faster; ascending.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -74,7 +75,7 @@ def eigenvalues(model: LinearModel) -> Array:
 
 
 def lowest_modes(model: LinearModel) -> Eigen:
-    """All modes of a model; of a large sparse one some 30 of the lowest, without those of the last cluster, which may go on.
+    """Compute all modes; for a large sparse model about 30 of the lowest, without the last cluster, which may be incomplete.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -90,7 +91,7 @@ def lowest_modes(model: LinearModel) -> Eigen:
 
 
 def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
-    """Eigenvalues and shapes of K phi = lambda M phi; `weights` (n,) compare coordinates for the sign rule.
+    """Solve K phi = lambda M phi for eigenvalues and shapes; `weights` (n,) make coordinates comparable for the sign rule.
 
     >>> solve(np.diag([4.0, 9.0]), np.eye(2), np.ones(2)).values.tolist()
     [4.0, 9.0]
@@ -106,7 +107,7 @@ def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
 
 
 def _scaled(stiffness: Array, inertia: Array) -> tuple[Array, Array]:
-    """L of K = L L^T, and L^-1 M L^-T; the unit matrix where K is not positive definite."""
+    """L of K = L L^T, and L^-1 M L^-T; the unit matrix if K is not positive definite."""
     batch = np.broadcast_shapes(stiffness.shape[:-2], inertia.shape[:-2])
     stiffness = np.broadcast_to(stiffness, (*batch, *stiffness.shape[-2:]))
     lower = cholesky(stiffness)
@@ -116,7 +117,7 @@ def _scaled(stiffness: Array, inertia: Array) -> tuple[Array, Array]:
 
 
 def _forward(lower: Array, right: Array) -> Array:
-    """L^-1 times a matrix; of large ones without factors of L."""
+    """L^-1 times a matrix; for large matrices without inverting L."""
     size = lower.shape[-1]
     if size <= WIDE:
         return np.linalg.solve(lower, right)
@@ -125,10 +126,10 @@ def _forward(lower: Array, right: Array) -> Array:
 
 
 def _massive(inverse_values: Array, lower: Array, inertia: Array) -> Array:
-    """Those (..., k), descending, of modes with inertia: as many in every design that has a factor `lower`.
+    """Values (..., k), descending, of modes with inertia: equal in number for every design that has a factor `lower`.
 
-    Near instability one value dwarfs the others and what is left of the smallest is rounding: NaN there. How many modes there are is not in
-    doubt, it is the rank of the inertia.
+    Near instability one value dominates and the smallest are rounding: NaN there. The number of modes is known nevertheless: it is the rank
+    of the inertia.
     """
     counts = np.sum(inverse_values > _MASSLESS * np.max(inverse_values, axis=-1, keepdims=True, initial=0.0), axis=-1)
     sound = np.ravel(~np.isnan(lower[..., 0, 0]))
@@ -144,14 +145,14 @@ def _massive(inverse_values: Array, lower: Array, inertia: Array) -> Array:
 
 
 def _rank(inertia: Array) -> Array:
-    """Rank of each matrix, its coordinates weighted to equal inertia of their own."""
+    """Rank of each matrix, its coordinates weighted to equal inertia."""
     own = np.sqrt(np.diagonal(inertia, axis1=-2, axis2=-1))
     weights = np.divide(1.0, own, out=np.zeros_like(own), where=own > 0.0)
     return np.linalg.matrix_rank(inertia * weights[..., :, None] * weights[..., None, :], tol=_MASSLESS * own.shape[-1], hermitian=True)
 
 
 def cholesky(matrix: Array) -> Array:
-    """Lower factor of each matrix of a batch, NaN where a matrix is not positive definite.
+    """Compute the lower Cholesky factor of each matrix of a batch, NaN if a matrix is not positive definite.
 
     >>> cholesky(np.array([[[4.0]], [[-1.0]]])).ravel().tolist()
     [2.0, nan]
@@ -171,7 +172,7 @@ def _cholesky_one(matrix: Array) -> Array:
 
 
 def _clean(matrix: Array) -> Array:
-    """Failed designs become the unit matrix so that the batch can be decomposed."""
+    """Replace failed designs with the unit matrix so that the batch can be decomposed."""
     failed = np.isnan(matrix).any(axis=(-2, -1), keepdims=True)
     return np.where(failed, np.eye(matrix.shape[-1]), matrix)
 
@@ -184,7 +185,7 @@ def _apply_signs(shapes: Array, weights: Array) -> Array:
 
 
 def sign_weights(coordinates: tuple[str, ...]) -> Array:
-    """What makes lengths of coordinates (n,) to be compared: 0.1 m for rotations.
+    """Return weights that make coordinates (n,) comparable as lengths: 0.1 m for rotations.
 
     >>> sign_weights(("arm.x", "arm.rz")).tolist()
     [1.0, 0.1]

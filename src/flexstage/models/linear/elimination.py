@@ -1,7 +1,9 @@
 """Exact elimination of linear constraints by a pivoted partition of the coordinates.
 
-A z = 0 with rank r: r dependent coordinates follow from the independent ones, z_d = -A_d^-1 A_i z_i. Pivots are chosen on real parts, so
-the result stays complex-analytic: by `eliminate` on the first design of a batch, by `eliminate_each` on every design.
+A z = 0 with rank r: r dependent coordinates follow from the independent ones, z_d = -A_d^-1 A_i z_i.
+
+Pivots are chosen on real parts, so that the result is complex-analytic: by `eliminate` on the first design of a batch, by `eliminate_each`
+on every design.
 """
 
 from __future__ import annotations
@@ -18,16 +20,16 @@ from flexstage.base.number import Array, first_design
 
 _RANK = 1e-9
 _WEAKER = 1e-3
-"""By how much the first design's pivots may be less independent in another design of a batch."""
+"""Permitted decrease of pivot independence from the first design to another one of a batch."""
 _PREFERENCE = 1e-6
-"""Symmetric stages tie in pivots: each column counts this much less than the one before it, so that rounding does not choose."""
+"""Symmetric stages have equal pivots: each column counts this much less than the previous one, so that rounding does not decide."""
 
 
 @dataclass(frozen=True, eq=False)
 class Elimination:
     """z = `basis` z_independent, basis (..., N, f).
 
-    `independent` and `dependent` are indices of coordinates, `rows` of the constraints that the dependent ones follow from.
+    `independent` and `dependent` are indices of coordinates, `rows` the constraints that determine the dependent ones.
     """
 
     basis: Array
@@ -44,8 +46,9 @@ class Elimination:
 def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
     """Eliminate the constraints A z = 0, A (..., m, N).
 
-    `scale` (N,) makes the coordinates comparable; `keep` are kept independent if possible. Raises `DesignError` for designs of a batch that
-    the pivots of the first do not serve: other constraints are independent there, or these hardly are.
+    `scale` (N,) makes the coordinates comparable; `keep` are kept independent if possible.
+
+    Raises `DesignError` for batch designs in which the pivots of the first design are dependent or nearly so.
 
     >>> eliminate(np.array([[1.0, 2.0]]), np.ones(2), keep=(0,)).basis.ravel().tolist()
     [1.0, -0.5]
@@ -56,7 +59,7 @@ def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> E
 
 
 def _require_served(constraints: Array, scale: Array, choice: _Choice) -> None:
-    """Refuse designs in which the pivots of the first are hardly independent, or leave constraints unmet."""
+    """Refuse designs in which the pivots of the first are nearly dependent, or leave constraints unsatisfied."""
     designs = np.real(constraints).reshape(math.prod(constraints.shape[:-2]), *constraints.shape[-2:])
     others = np.flatnonzero(np.any(designs != designs[0], axis=(1, 2)) & np.all(np.isfinite(designs), axis=(1, 2)))
     if not len(others):
@@ -71,19 +74,21 @@ def _require_served(constraints: Array, scale: Array, choice: _Choice) -> None:
 
 def _require_none(others: Array) -> None:
     if len(others):
-        raise unlike(int(others[0]), "has locked freedoms that depend on one another in another way than those of the first")
+        raise unlike(int(others[0]), "has locked freedoms with other dependencies than those of the first")
 
 
 def unlike(number: int, what: str) -> DesignError:
-    """The refusal of a design of a batch, counted from 0, that cannot be read with the choices of the first."""
-    return refuse("designs", f"design {number + 1} of the batch {what}", "Read them one by one")
+    """Build the error of a batch design, counted from 0, that does not agree with the choices of the first."""
+    return refuse("designs", f"design {number + 1} of the batch {what}", "Analyse them one by one")
 
 
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
-    """As `eliminate`, each design of a batch by its own pivots: what is found of it is what is found of it alone, to the last bit.
+    """Eliminate as `eliminate`, each design of a batch by its own pivots: equal to the last bit to the single-design result.
 
-    `scale` is (..., N). Designs may differ in the coordinates that stand for motions outside `keep`: those told are the first design's.
-    Raises `DesignError` for designs that have other coordinates of `keep` independent, or another number of independent coordinates.
+    `scale` is (..., N). Designs may differ in the coordinates outside `keep` that represent motions: the returned ones are those of the
+    first design.
+
+    Raises `DesignError` for designs with other independent coordinates in `keep`, or another number of independent coordinates.
 
     >>> rows = np.array([[[1.0, 2.0, 0.0]], [[1.0, 0.0, 2.0]]])
     >>> eliminate_each(rows, np.ones((2, 3)), keep=(0,)).basis[:, :, 0].tolist()
@@ -105,41 +110,41 @@ _Choice = tuple[tuple[int, ...], tuple[int, ...]]
 
 
 def _by_choice(designs: Array, scale: Array, keep: tuple[int, ...]) -> dict[_Choice, list[int]]:
-    """Numbers of the designs (b, m, N) that have a choice of pivots in common; steps of one design are not chosen for anew."""
-    found: dict[_Choice, list[int]] = {}
+    """Numbers of the designs (b, m, N) by common choice of pivots; complex steps of one design share its choice."""
+    result: dict[_Choice, list[int]] = {}
     last: _Choice | None = None
     for number, (rows, sizes) in enumerate(zip(designs, scale, strict=True)):
         stays = last is not None and np.array_equal(rows, designs[number - 1]) and np.array_equal(sizes, scale[number - 1])
         last = last if stays and last is not None else _choice(rows, sizes, keep)
-        found.setdefault(last, []).append(number)
-    return found
+        result.setdefault(last, []).append(number)
+    return result
 
 
 def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], keep: tuple[int, ...]) -> None:
-    """Refuse designs whose motions are others than the first design's."""
+    """Refuse designs whose motions differ from the first design's."""
     mine = _freedom(parts[0], keep)
     for part, numbers in zip(parts[1:], designs[1:], strict=True):
         theirs = _freedom(part, keep)
         if theirs != mine:
-            counts = [f"{len(kept)} of the platform and {beside} beside" for kept, beside in (theirs, mine)]
+            counts = [f"{len(kept)} of the platform and {others} others" for kept, others in (theirs, mine)]
             other = counts[0] if counts[0] != counts[1] else "as many, but other ones"
             raise unlike(numbers[0], f"has other motions than the first, which has {counts[1]}: {other}")
 
 
-def _freedom(found: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
-    kept = tuple(index for index in found.independent if index in keep)
-    return kept, len(found.independent) - len(kept)
+def _freedom(solution: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
+    kept = tuple(index for index in solution.independent if index in keep)
+    return kept, len(solution.independent) - len(kept)
 
 
 def _choice(rows: Array, scale: Array, keep: tuple[int, ...]) -> _Choice:
-    """Dependent columns of one real design (m, N), and the rows that these follow from."""
+    """Dependent columns of one real design (m, N), and the rows that determine them."""
     first = _comparable(rows, scale)
     dependent = _pivot_columns(first, keep)
     return tuple(dependent), tuple(_pivots(first[:, dependent].T)[: len(dependent)])
 
 
 def _comparable(rows: Array, scale: Array) -> Array:
-    """Constraints (..., m, N) of length one over comparable coordinates; those of nothing stay."""
+    """Constraints (..., m, N) scaled to unit length over comparable coordinates; zero rows are unchanged."""
     scaled = rows * scale
     norms = np.linalg.norm(scaled, axis=-1, keepdims=True)
     return scaled / np.where(norms > 0.0, norms, 1.0)
@@ -157,7 +162,7 @@ def _solved(constraints: Array, choice: _Choice) -> Elimination:
 
 
 def imposed_motion(solution: Elimination, constraints: Array, imposed: Array) -> Array:
-    """The motion z (..., N, m) of the dependent coordinates alone that gives the constraints the values A z = imposed (m of m columns).
+    """Compute the motion z (..., N, m) of the dependent coordinates that gives the constraints A z = imposed (m of m columns).
 
     >>> rows = np.array([[1.0, 2.0]])
     >>> imposed_motion(eliminate(rows, np.ones(2), keep=(0,)), rows, np.array([[3.0]])).ravel().tolist()
@@ -165,13 +170,13 @@ def imposed_motion(solution: Elimination, constraints: Array, imposed: Array) ->
     """
     square = constraints[..., solution.rows, :][..., solution.dependent]
     result = np.zeros((*constraints.shape[:-2], constraints.shape[-1], imposed.shape[-1]), dtype=constraints.dtype)
-    wanted = np.broadcast_to(imposed[list(solution.rows)], (*square.shape[:-2], len(solution.rows), imposed.shape[-1]))
-    result[..., solution.dependent, :] = np.linalg.solve(square, wanted)
+    target = np.broadcast_to(imposed[list(solution.rows)], (*square.shape[:-2], len(solution.rows), imposed.shape[-1]))
+    result[..., solution.dependent, :] = np.linalg.solve(square, target)
     return result
 
 
 def _pivot_columns(first: Array, keep: tuple[int, ...]) -> list[int]:
-    """Dependent columns: as many as possible outside `keep`, the rest inside."""
+    """Dependent columns: as many as possible outside `keep`, the others inside."""
     outside = _without(first.shape[1], keep)
     if not first.size:
         return []
@@ -207,7 +212,7 @@ def _rank(triangle: Array) -> int:
 
 
 def echelon(basis: Array) -> Array:
-    """The same row space with a unit in a pivot column of each row and zeros in that column elsewhere: vectors with small support.
+    """Transform to reduced echelon form, with a unit in a pivot column of each row and zeros elsewhere: vectors with small support.
 
     >>> (echelon(np.array([[1.0, 1.0], [1.0, -1.0]])) + 0.0).tolist()
     [[1.0, 0.0], [0.0, 1.0]]
@@ -219,7 +224,7 @@ def echelon(basis: Array) -> Array:
 
 
 def null_space(matrix: Array) -> Array:
-    """Orthonormal basis (columns) of the null space of one real matrix whose columns are comparable, by pivoted QR of its transpose.
+    """Compute an orthonormal basis (columns) of the null space of one real matrix with comparable columns, by pivoted QR of its transpose.
 
     >>> np.abs(null_space(np.array([[1.0, 0.0]]))).round(12).ravel().tolist()
     [0.0, 1.0]

@@ -24,9 +24,10 @@ _CHUNK = 4_000_000
 
 
 class Response(Result):
-    """A frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
+    """Frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
 
-    `frequencies` (f,) in Hz; `outputs` and `inputs` carry names and units; an entry's unit is output unit / input unit. Batch axes lead.
+    `frequencies` (f,) in Hz; `outputs` and `inputs` have names and units; the unit of an entry is output unit / input unit. Batch axes
+    lead.
     """
 
     frequencies: Annotated[Array, FREQUENCY, Called("frequency")]
@@ -52,7 +53,7 @@ class Response(Result):
         return ratio_units(tuple(channel.unit for channel in self.outputs), tuple(channel.unit for channel in self.inputs))
 
     def matrix(self, index: int) -> Matrix:
-        """The labelled complex matrix (..., p, m) at the frequency of that index."""
+        """Return the labelled complex matrix (..., p, m) at a frequency index."""
         return Matrix(self.values[..., index, :, :], self.rows, self.columns, self.units)
 
     @property
@@ -85,13 +86,15 @@ class Response(Result):
 
 
 def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
-    """H (..., f, p, m) at `frequencies` (f,) in Hz: y/u with M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u.
+    """Compute H (..., f, p, m) at `frequencies` (f,) in Hz: y/u with M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u.
 
-    Modal and Rayleigh damping by exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f;
-    the remainder R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact. Structural damping by direct
-    solves of K* - omega^2 M, where a stroke u exerts K_p (1 + j eta_p) u and a link's force is lost alike. A frequency of zero gives the
-    static gain. A model with dampers of parts (`LinearModel.viscous`), which couple modes, is solved
-    directly under any law.
+    - Modal and Rayleigh damping: exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f. The residual
+      R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact.
+    - Structural damping: direct solutions of K* - omega^2 M, where a stroke u exerts K_p (1 + j eta_p) u and a link force has the same
+      loss.
+    - Dampers of parts (`LinearModel.viscous`) couple modes: direct solutions under any law.
+
+    A frequency of zero gives the static gain.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -109,7 +112,7 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
         "response",
         f"{lines:,} lines of {outputs:,} outputs and {inputs:,} inputs",
         each * lines,
-        lambda there: f"Ask for {int(there / each):,} lines at most, or for fewer outputs and inputs",
+        lambda memory: f"Request {int(memory / each):,} lines at most, or fewer outputs and inputs",
     )
     if isinstance(damping, StructuralDamping):
         return _structural(model, chosen, frequencies)
@@ -120,16 +123,16 @@ def _structural(model: LinearModel, chosen: Ports, frequencies: Array) -> Array:
     lossy = replace(chosen, force=chosen.force + 1j * chosen.lost)
     stiffness = structural_stiffness(model)
     if model.viscous:
-        found = _with_dampers(model, lossy, frequencies, StructuralDamping(), stiffness)
+        responses = _with_dampers(model, lossy, frequencies, StructuralDamping(), stiffness)
     else:
-        found = direct(stiffness, model.inertia_matrix, lossy, frequencies)
-    return found * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
+        responses = direct(stiffness, model.inertia_matrix, lossy, frequencies)
+    return responses * (1.0 + 1j * np.asarray(chosen.loss))[..., None, :, None]
 
 
 def _with_dampers(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping, stiffness: Array) -> Array:
-    """H (..., f, p, m) by direct solves where parts damp by themselves: M z'' + (D_law + D) z' + K z = B u + G^T D_p imposed u' - M_b u''.
+    """H (..., f, p, m) by direct solutions for parts with dampers: M z'' + (D_law + D) z' + K z = B u + G^T D_p imposed u' - M_b u''.
 
-    D_law is alpha M + beta K, or M Phi diag(2 zeta omega) Phi^T M; none for a `stiffness` that is complex.
+    D_law is alpha M + beta K, or M Phi diag(2 zeta omega) Phi^T M; zero for a complex `stiffness`.
     """
     resisted: Array = np.zeros((len(model.coordinates),) * 2)
     dragged: Array = np.zeros((len(model.coordinates), len(chosen.inputs)))
@@ -144,7 +147,7 @@ def _with_dampers(model: LinearModel, chosen: Ports, frequencies: Array, damping
 
 
 def _law_matrix(model: LinearModel, damping: Damping) -> Array:
-    """What a damping law resists (..., n, n) [N s/m]."""
+    """Damping matrix (..., n, n) [N s/m] of a damping law."""
     if isinstance(damping, RayleighDamping):
         mass, stiffness = (np.asarray(factor)[..., None, None] for factor in (damping.mass_factor, damping.stiffness_factor))
         return mass * model.inertia_matrix + stiffness * model.stiffness_matrix
@@ -154,7 +157,7 @@ def _law_matrix(model: LinearModel, damping: Damping) -> Array:
 
 
 def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
-    """What the chosen inputs impose on a link (..., d, m): six rows, or as many as its damper has.
+    """Return the deformation (..., d, m) that the chosen inputs impose on a link: six rows, or as many as its damper has.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -172,16 +175,16 @@ def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Dampers:
-    """What resists the rates of the coordinates (..., n, n), and what rates of the inputs exert through it (..., n, m)."""
+    """Damping matrix (..., n, n) of the coordinates, and forces per rate of the inputs through the dampers (..., n, m)."""
 
     resisted: Array
     dragged: Array
 
 
 def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array, dampers: Dampers | None = None) -> Array:
-    """H (..., f, p, m) by solving (K - omega^2 M) z = (B + omega^2 M_b) u at each frequency; K may be complex.
+    """Compute H (..., f, p, m) by solving (K - omega^2 M) z = (B + omega^2 M_b) u at each frequency; K may be complex.
 
-    With `dampers` j omega of what they resist is added on the left, of what inputs drag along on the right.
+    `dampers` add j omega times their damping matrix on the left and their input forces on the right.
 
     >>> one, none = np.ones((1, 1)), np.zeros((1, 1))
     >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), one, none, one, none)
@@ -207,7 +210,7 @@ def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array, dampe
 
 
 def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
-    """H (..., f, p, m) by superposition of modes: as `transfer`, but structural damping by each mode's equivalent ratio, as in time.
+    """Compute H (..., f, p, m) by modal superposition: as `transfer`, but structural damping by equivalent modal ratios, as in time domain.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.mechanism import StructuralDamping
@@ -224,17 +227,17 @@ def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Da
     solved = eigen(model)
     omega = 2.0 * np.pi * frequencies
     square = (omega**2)[:, None, None]
-    seen = (chosen.output @ solved.shapes)[..., None, :, :]
+    output = (chosen.output @ solved.shapes)[..., None, :, :]
     gains = 1.0 / _denominators(model, solved, omega, damping)
     force, inertial = modal_forces(solved, chosen)
-    response = (seen * gains[..., None, :]) @ (force[..., None, :, :] + square * inertial[..., None, :, :])
+    response = (output * gains[..., None, :]) @ (force[..., None, :, :] + square * inertial[..., None, :, :])
     fast = 1.0 / (1.0 + 1j * omega * _stiffness_factor(damping))[..., None, None]
     remainder = residual(model, solved, chosen)[..., None, :, :]
     return response + fast * remainder + chosen.feedthrough[..., None, :, :]
 
 
 def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
-    """Phi^T B and Phi^T M_b (..., k, m): modal forces per input and per input acceleration (to be taken with the opposite sign).
+    """Compute Phi^T B and Phi^T M_b (..., k, m): modal forces per input and per input acceleration (with opposite sign).
 
     >>> one = np.ones((1, 1))
     >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), 3.0 * one, 0.0 * one, one, 0.0 * one)
@@ -246,9 +249,9 @@ def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
 
 
 def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
-    """C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): what modes left out, or freedoms without inertia, add statically.
+    """Compute C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): the static residual of omitted modes and of freedoms without inertia.
 
-    Motions of the ground add nothing: M_b lies in the range of M, which the modes span.
+    Motions of the ground add nothing: M_b is in the range of M, which the modes span.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports

@@ -1,4 +1,4 @@
-"""Kinematics: what an ideal model ends in."""
+"""Kinematics: the result of an ideal model."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True)
 class Idle:
-    """A freedom that neither stroke nor platform feels (a strut spinning about itself): the `bodies` that move, the `links` that deform."""
+    """Free internal mode, independent of strokes and platform (a strut that spins): `bodies` that move, `links` that deform."""
 
     TABLE: ClassVar[Layout] = Layout("Free internal modes (zero stiffness)", "bodies links")
 
@@ -31,7 +31,7 @@ class Idle:
 
 @dataclass(frozen=True)
 class Redundant:
-    """A redundant constraint: the locked freedoms (`B1/left.y`) of which one is superfluous."""
+    """Redundant constraint: locked freedoms (`B1/left.y`), one of which is superfluous."""
 
     TABLE: ClassVar[Layout] = Layout("Redundant constraints", "constraints")
 
@@ -41,15 +41,18 @@ class Redundant:
 class Kinematics(Result):
     """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
 
-    The platform's twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
-    `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f), `bodies` the motion of all body coordinates per
-    xi (..., N, f), `strains` each link's deformation per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
-    `free` says which freedoms were taken as free at each link. `length` (...) is the scale that makes rotations comparable with
-    translations. `blocked` says of each immobile actuator which locked freedoms hold its stroke. `gauge_units` are those of the readings
-    (absent: m), `sums` the weights of the gauges that each sum of gauges takes up.
+    The platform twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
 
-    `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion; `thrust` (..., f, t) is the generalised force that
-    a unit of their input (`thrust_inputs`, N or A) exerts on xi, V^T W.
+    - `actuation`: da/dxi (..., n, f); `sensing`: ds/dx (..., g, 6); `motion`: V (..., 6, f).
+    - `bodies`: motion of all body coordinates per xi (..., N, f).
+    - `strains`: deformation of each link per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
+    - `free`: the free freedoms of each link.
+    - `length` (...): scale that makes rotations comparable with translations.
+    - `blocked`: blockage of each immobile actuator.
+    - `gauge_units`: units of the readings (absent: m); `sums`: weights of the gauges in each sum of gauges.
+
+    `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion. `thrust` (..., f, t) is the generalised force per
+    unit of their input (`thrust_inputs`, N or A) on xi, V^T W.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.ideal(stage)")
@@ -76,7 +79,7 @@ class Kinematics(Result):
 
     @property
     def mobility(self) -> Annotated[int, VIEW]:
-        """Number of ideal motions of the platform when the strokes are free."""
+        """Number of ideal motions of the platform with free strokes."""
         return len(self.coordinates)
 
     @property
@@ -87,24 +90,26 @@ class Kinematics(Result):
 
     @property
     def immobile(self) -> tuple[str, ...]:
-        """Actuators whose stroke no ideal motion of the platform changes: rigid links hold them (on the first design)."""
+        """Actuators whose stroke no ideal motion of the platform changes, due to rigid links (of the first design)."""
         scaled = first_design(np.real(self.actuation) * self._rotations_as_lengths, 2)
         size = np.max(np.abs(scaled), axis=-1, initial=0.0)
         return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)
 
     @property
     def mapping(self) -> Annotated[Matrix, Called("R_a")]:
-        """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six freedoms). Raises `DesignError` where the stage is under-actuated."""
+        """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six freedoms). Raises `DesignError` if the stage is under-actuated."""
         self._require_actuated()
         return Matrix(self.actuation, self.actuators, self.coordinates, ratio_units(("m",) * len(self.actuators), self._units))
 
     @property
     def force_map(self) -> Annotated[Matrix, Called("W")]:
-        """V^T W: what a unit input of each force actuator exerts on the platform along its ideal motions, by virtual work.
+        """V^T W: generalised force on the platform's ideal motions per unit input of each force actuator, by virtual work.
 
-        With six freedoms V is the identity and this is the platform's whole wrench at its reference point, W = R_f^T with R_f the force
-        actuators' d(elongation)/dx, times force per unit input. With fewer, no more of W is known than its work in the ideal motions: the
-        rest is borne by locked freedoms, and a row is the force conjugate to its coordinate. Positive inputs push apart.
+        With six freedoms V is the identity and this is the whole platform wrench at its reference point. W = R_f^T with R_f the force
+        actuators' d(elongation)/dx, times force per unit input.
+
+        With fewer freedoms only the work of W in the ideal motions is known; locked freedoms carry the other components. A row is then the
+        force conjugate to its coordinate. Positive inputs push apart.
         """
         rows = [COMPONENTS.index(name) for name in self.coordinates]
         units = ratio_units(tuple(WRENCH_UNITS[row] for row in rows), self.thrust_inputs)
@@ -112,9 +117,9 @@ class Kinematics(Result):
 
     @property
     def commanded(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Platform coordinates that strokes and forces together can command alone: an input combination exerts on no other (first design).
+        """Platform coordinates that strokes and forces can command independently of all others (first design).
 
-        Those of all ideal motions if R_a and V^T W together have rank f; without force actuators, what the strokes hold.
+        All ideal motions if R_a and V^T W together have rank f; without force actuators, those that the strokes determine.
         """
         first = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)]), np.real(self.thrust[(0,) * (self.thrust.ndim - 2)])
         scale = first_design(self._rotations_as_lengths, 2)[0]
@@ -126,7 +131,7 @@ class Kinematics(Result):
 
     @property
     def motions(self) -> Annotated[Matrix, VIEW]:
-        """V, the platform's twist in each ideal motion."""
+        """V, the platform twist in each ideal motion."""
         return Matrix(self.motion, COMPONENTS, self.coordinates, ratio_units(TWIST_UNITS, self._units))
 
     @property
@@ -155,18 +160,18 @@ class Kinematics(Result):
 
     @property
     def single_gauges(self) -> tuple[str, ...]:
-        """The gauges that are no sums of others."""
+        """The gauges that are not sums of others."""
         return tuple(name for name in self.gauges if name not in self.sums)
 
     @property
     def telling(self) -> tuple[str, ...]:
-        """The gauges, sums among them, that no sum takes up: the pose follows from these."""
+        """The gauges, including sums, that are not part of a sum: they determine the pose."""
         taken = {member for members in self.sums.values() for member in members}
         return tuple(name for name in self.gauges if name not in taken)
 
     @property
     def selection(self) -> Array:
-        """Readings of the `telling` gauges from those of the `single_gauges` (..., t, s): ones, and the weights of sums."""
+        """Readings of the `telling` gauges by those of the `single_gauges` (..., t, s): ones, and the weights of sums."""
         rows = [[np.asarray(self.sums.get(name, {name: 1.0}).get(single, 0.0)) for single in self.single_gauges] for name in self.telling]
         batch = np.broadcast_shapes(*(item.shape for row in rows for item in row))
         flat = [np.broadcast_to(item, batch) for row in rows for item in row]
@@ -190,12 +195,12 @@ class Kinematics(Result):
 
     @property
     def jacobian(self) -> Annotated[Matrix, VIEW]:
-        """J = dx/da (..., 6, n): the ideal platform twist per stroke, V R_a^-1."""
+        """J = dx/da (..., 6, n): the ideal platform twist per stroke (Jacobian), V R_a^-1."""
         return Matrix(self.motion @ self.inverse, COMPONENTS, self.actuators, ratio_units(TWIST_UNITS, ("m",) * len(self.actuators)))
 
     @property
     def projection(self) -> Array:
-        """V^+ (..., f, 6): the part of a platform twist that is an ideal motion, rotations weighted with `length`."""
+        """V^+ (..., f, 6): projection of a platform twist on the ideal motions, rotations weighted with `length`."""
         weight = _scales(COMPONENTS, self.length)[..., None, :] ** 2
         weighted = np.swapaxes(self.motion, -1, -2) * weight
         return np.linalg.solve(weighted @ self.motion, weighted)
@@ -209,19 +214,19 @@ class Kinematics(Result):
             raise refuse(
                 "mapping",
                 f"{strokes} not determine the platform's {motions} ({', '.join(self.coordinates) or 'none'}){held}",
-                f"{'; '.join(mend)}; stiffness, modes and response are given all the same",
+                f"{'; '.join(mend)}; stiffness, modes and response are available nevertheless",
             )
 
     @property
     def _advice(self) -> str:
-        """What to do where strokes do not determine the platform."""
+        """Hint for strokes that do not determine the platform."""
         if not self.thrusts:
             return "Add actuators or lock freedoms of links"
-        return f"Forces ({', '.join(self.thrusts)}) determine no motion: ask the elastic model how far they move it"
+        return f"Forces ({', '.join(self.thrusts)}) determine no motion: the elastic model computes the displacement"
 
     @property
     def blockages(self) -> tuple[Finding, ...]:
-        """Strokes that cannot move, the links that block them, strongest first, and what to free; those blocked alike are told once."""
+        """Warnings of immobile strokes: the links that block them, largest force first, and the freedoms to free; equal ones are joined."""
         return join_findings(
             Finding(name, f"the stroke cannot move: it is blocked by the locked freedoms of {_by_link(each.against)}", _freeing(each))
             for name, each in self.blocked.items()
@@ -237,13 +242,13 @@ def _by_link(freedoms: tuple[str, ...]) -> str:
 
 
 def _freeing(blockage: Blockage) -> str:
-    *rest, last = blockage.free or ("one of them",)
+    *others, last = blockage.free or ("one of them",)
     word = "and" if blockage.together else "or"
-    told = f"ree {', '.join(rest)} {word} {last}" if rest else f"ree {last}"
+    hint = f"ree {', '.join(others)} {word} {last}" if others else f"ree {last}"
     if not blockage.ends:
-        return f"F{told}"
+        return f"F{hint}"
     hinge = "a hinge at each end" if len(blockage.ends) > 1 else "a hinge at that end"
-    return f"It joins {' and '.join(blockage.ends)} without a hinge, and gives way along itself alone: put {hinge}; or f{told}"
+    return f"It joins {' and '.join(blockage.ends)} without a hinge, and is elastic along its axis only: put {hinge}; or f{hint}"
 
 
 def _scales(names: tuple[str, ...], rotation: Number) -> Array:

@@ -1,8 +1,10 @@
-"""Stiffness and inertia of large stages without their zeros: factors, exact solves and the lowest modes.
+"""Sparse stiffness and inertia of large stages: factors, exact solutions and the lowest modes.
 
-K = G^T k G with G the strains of all links. In a long chain K forgets, by rounding, what rigid motion of a part of it costs: nothing. So
-solutions are refined with the forces of the strains themselves, and where that does not converge, strains and motions are unknowns beside
-one another, whose equations know rigid motions exactly (the augmented system of weighted least squares; Bjorck, BIT 7, 1, 1967).
+K = G^T k G with G the strains of all links. In a long chain rounding in K hides that rigid motions of a part have no energy. Solutions are
+therefore refined with the forces of the strains.
+
+If that does not converge, strains and motions are joint unknowns, for which rigid motions are exact (the augmented system of weighted least
+squares; Bjorck, BIT 7, 1, 1967).
 """
 
 from __future__ import annotations
@@ -21,47 +23,47 @@ from flexstage.base.number import Array
 from flexstage.base.sparse import Sparse, as_csr, block_diagonal
 
 SINGULAR = 1e-11
-"""The least share of a diagonal of K that a pivot or eigenvalue may have."""
+"""Minimum pivot or eigenvalue over the diagonal of K."""
 _DEFINITE = 1e-12
 _EXACT = 1e-13
 _ENOUGH = 1e-9
 _USABLE = 1e-6
-"""What loads in balance with one another, as of growing parts, may leave: their own rounding says no more."""
+"""Permitted residual of self-balanced loads, as of growing parts: the level of their rounding."""
 _STEPS = 12
 _SOFT = 1e-8
-"""What rigid strains give in the factor, beside one for the others; refinement takes it away."""
+"""Relative compliance of rigid strains in the factor; refinement removes it."""
 _RATIO, _RESTARTS = 1e-10, 100
 _MASSLESS = 1e-13
 _LEAST = 32
-"""Modes computed of a large stage; those of the last cluster, which may go on, are left out."""
+"""Number of computed modes of a large stage; the last cluster, which may be incomplete, is omitted."""
 
 
 @contextmanager
 def _fits(matrix: Any) -> Generator[None]:
-    """Refuses a factor for which there is no memory."""
+    """Refuse a factor that does not fit into memory."""
     try:
         yield
     except MemoryError as error:
         what = f"the factor of its {matrix.shape[0]:,} equations, with {matrix.nnz:,} coefficients, does not fit into memory"
-        raise refuse("stage", what, "Read parts of the stage, or free memory") from error
+        raise refuse("stage", what, "Analyse parts of the stage, or free memory") from error
 
 
 def symmetric_factor(matrix: Any) -> Any:
-    """The factor of a symmetric sparse matrix, in the order of least degree. Raises `DesignError` where it does not fit into memory."""
+    """Factorise a symmetric sparse matrix in minimum-degree order. Raises `DesignError` if it does not fit into memory."""
     with _fits(matrix):
         return scipy.sparse.linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
-    """A sum of contributions G^T k G by all their rows G (R, n) and laws k (R, R), both sparse."""
+    """Sum of contributions G^T k G with all their rows G (R, n) and laws k (R, R), both sparse."""
 
     rows: Any
     law: Any
 
     @staticmethod
     def of(operators: Iterable[Sparse], laws: Iterable[Array], size: int) -> Quadratic:
-        """That of operators (r, n) and laws (r, r)."""
+        """Build from operators (r, n) and laws (r, r)."""
         return Quadratic(as_csr(operators, size), block_diagonal(laws))
 
     @property
@@ -70,7 +72,7 @@ class Quadratic:
         return self.rows.shape[1], self.rows.shape[1]
 
     def __matmul__(self, motion: Array) -> Array:
-        """G^T k G times a motion (n, k), by way of the strains."""
+        """Multiply G^T k G by a motion (n, k), via the strains."""
         return self.rows.T @ (self.law @ (self.rows @ motion))
 
     def __add__(self, other: Quadratic) -> Quadratic:
@@ -82,7 +84,7 @@ class Quadratic:
 
     @cached_property
     def matrix(self) -> Any:
-        """G^T k G as a sparse symmetric matrix."""
+        """Assemble G^T k G as a sparse symmetric matrix."""
         total = self.rows.T @ self.law @ self.rows
         return (0.5 * (total + total.T)).tocsc()
 
@@ -95,13 +97,13 @@ class Solver:
 
     @cached_property
     def scale(self) -> Array:
-        """What makes the diagonal of K one."""
+        """Scale that makes the diagonal of K one."""
         diagonal = self.stiffness.matrix.diagonal()
         return np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
 
     @cached_property
     def _root(self) -> Array:
-        """What makes the diagonal of the links' law one."""
+        """Scale that makes the diagonal of the links' law one."""
         diagonal = np.abs(self.stiffness.law.diagonal())
         return np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
 
@@ -122,7 +124,7 @@ class Solver:
             return scipy.sparse.linalg.splu(whole), rows, pull
 
     def definite(self) -> bool:
-        """Whether K is positive definite, told from its pivots: none is small beside its diagonal."""
+        """Whether K is positive definite: all pivots are large enough compared with its diagonal."""
         try:
             pivots = self._factor.U.diagonal()
         except RuntimeError:  # exactly singular
@@ -130,7 +132,7 @@ class Solver:
         return bool(np.min(pivots) > SINGULAR)
 
     def solve(self, load: Array) -> Array:
-        """q (n, k) for loads (n, k). Raises `DesignError` where the digits that computers carry do not suffice."""
+        """Solve for q (n, k) under loads (n, k). Raises `DesignError` if double precision does not suffice."""
         try:
             motion, left = _refine(load, self._direct, self._missing)
         except RuntimeError:
@@ -143,10 +145,8 @@ class Solver:
     @staticmethod
     def _require(left: float) -> None:
         if not left <= _USABLE:
-            what = (
-                f"its equations are known to {left:.1g} of their solution only: rounding hides how stiff a large part of it is as a whole"
-            )
-            raise refuse("stage", what, "Look for stiffnesses out of all proportion, or read parts of the stage")
+            what = f"the relative accuracy of its equations is {left:.1g}: rounding hides the stiffness of a large part"
+            raise refuse("stage", what, "Check for extreme stiffness ratios, or analyse parts of the stage")
 
     def _direct(self, load: Array) -> Array:
         over = self.scale.reshape(-1, *[1] * (load.ndim - 1))
@@ -156,9 +156,9 @@ class Solver:
         return load - self.stiffness @ motion
 
     def follow(self, imposed: Array) -> Array:
-        """q (n, k) of least energy under strains (R, k) that come on top of those of q: K q = -G^T k `imposed`.
+        """Compute q (n, k) of least energy for strains (R, k) in addition to those of q: K q = -G^T k `imposed`.
 
-        The strains enter as they are, as forces they would lose by rounding that they fit. Raises `DesignError` as `solve` does.
+        The strains are not converted to forces, whose balance rounding would destroy. Raises `DesignError` as `solve`.
         """
         motion, left = self._with_strains(np.zeros((len(self.scale), imposed.shape[1])), imposed)
         self._require(left)
@@ -168,31 +168,31 @@ class Solver:
         factor, rows, pull = self._augmented
         over = self.scale.reshape(-1, *[1] * (load.ndim - 1))
         count = rows.shape[0]
-        given = np.zeros((count, *load.shape[1:])) if imposed is None else self._root[:, None] * imposed
-        whole = np.concatenate([given, load / over])
+        strains = np.zeros((count, *load.shape[1:])) if imposed is None else self._root[:, None] * imposed
+        whole = np.concatenate([strains, load / over])
 
-        def missing(wanted: Array, found: Array) -> Array:
-            strain, motion = found[:count], found[count:]
-            return np.concatenate([wanted[:count] - strain + rows @ motion, wanted[count:] - pull @ strain])
+        def missing(target: Array, solution: Array) -> Array:
+            strain, motion = solution[:count], solution[count:]
+            return np.concatenate([target[:count] - strain + rows @ motion, target[count:] - pull @ strain])
 
-        found, left = _refine(whole, factor.solve, missing)
-        return found[count:] / over, left
+        solution, left = _refine(whole, factor.solve, missing)
+        return solution[count:] / over, left
 
 
 def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
-    """Motions q (n, k) for which the strains `rows` q + `imposed` (R, k) vanish where they are `rigid` (R,), and are least elsewhere.
+    """Compute motions q (n, k): the strains `rows` q + `imposed` (R, k) are zero where `rigid` (R,), and minimal elsewhere.
 
-    Strains and motions are unknowns beside one another. Rigid strains give a little in the factor, so that it exists where they are
-    redundant too. `None` where these equations do not determine the motions.
+    Strains and motions are joint unknowns. Rigid strains have a small compliance in the factor, so that it exists if they are redundant.
+    `None` if these equations do not determine the motions.
     """
     count, size = rows.shape
     give = scipy.sparse.diags_array(np.where(rigid, 0.0, 1.0))
     soft = scipy.sparse.diags_array(np.where(rigid, _SOFT, 1.0))
     whole = scipy.sparse.block_array([[soft, -rows], [rows.T, None]], format="csc")
 
-    def missing(wanted: Array, found: Array) -> Array:
-        force, motion = found[:count], found[count:]
-        return np.concatenate([wanted[:count] - give @ force + rows @ motion, wanted[count:] - rows.T @ force])
+    def missing(target: Array, solution: Array) -> Array:
+        force, motion = solution[:count], solution[count:]
+        return np.concatenate([target[:count] - give @ force + rows @ motion, target[count:] - rows.T @ force])
 
     try:
         with _fits(whole):
@@ -200,31 +200,31 @@ def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
     except RuntimeError:  # exactly singular
         return None
     load = np.concatenate([imposed, np.zeros((size, imposed.shape[1]))])
-    found, left = _refine(load, factor.solve, missing, first=count)  # forces of redundant strains do not settle
-    return found[count:] if left <= _ENOUGH else None
+    solution, left = _refine(load, factor.solve, missing, first=count)  # forces of redundant strains do not converge
+    return solution[count:] if left <= _ENOUGH else None
 
 
 def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Array, float]:
-    """A solution refined until it stands from its `first` row on, and how much it changed there last, as a share.
+    """Refine a solution until it is stationary from its `first` row on; also return its last relative change there.
 
-    `solve` answers loads (n, k) roughly, `missing` tells what a solution leaves of a load.
+    `solve` solves loads (n, k) approximately, `missing` returns the residual load of a solution.
     """
-    found = solve(load)
+    solution = solve(load)
     last = np.inf
     for _ in range(_STEPS):
-        step = solve(missing(load, found))
-        before = np.maximum(np.linalg.norm(found[first:], axis=0), np.finfo(float).tiny)
+        step = solve(missing(load, solution))
+        before = np.maximum(np.linalg.norm(solution[first:], axis=0), np.finfo(float).tiny)
         size = float(np.max(np.linalg.norm(step[first:], axis=0) / before, initial=0.0))
         if not size < 0.5 * last:
             break
-        found, last = found + step, size
+        solution, last = solution + step, size
         if size < _EXACT:
             break
-    return found, last
+    return solution, last
 
 
 def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:
-    """Whether every law (6, 6) is positive definite and hangs every body on the ground, number `bodies`: then so is K, without rounding."""
+    """Return whether every law (6, 6) is positive definite and connects every body to the ground, number `bodies`: then K is definite."""
     distinct = {id(law): law for law in laws}.values()
     for law in distinct:
         root = np.sqrt(np.maximum(np.diag(law), np.finfo(float).tiny))
@@ -236,9 +236,9 @@ def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bod
 
 
 def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Array, Array]:
-    """The lowest eigenvalues (k,) of K phi = lambda M phi and their mass-normalised shapes (n, k), by shift and invert (Lanczos).
+    """Compute the lowest eigenvalues (k,) of K phi = lambda M phi and mass-normalised shapes (n, k), by shift and invert (Lanczos).
 
-    The values are Rayleigh quotients of strains and motions; the start is always the same, and so are the answers.
+    The values are Rayleigh quotients of strains and motions. The start vector is constant, so that results are reproducible.
     """
     size = inertia.rows.shape[1]
     shape = (size, size)
@@ -246,18 +246,18 @@ def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Arr
         scipy.sparse.linalg.LinearOperator(shape, matvec=each, dtype=float)
         for each in (lambda motion: solver.stiffness @ motion, lambda motion: inertia.matrix @ motion, solver.solve)
     )
-    found = scipy.sparse.linalg.eigsh(
+    result = scipy.sparse.linalg.eigsh(
         stiffness, min(count, max(1, size // 3)), mass, sigma=0.0, OPinv=inverse, v0=1.0 + 0.5 * np.cos(np.arange(size)), which="LM"
     )[1]
-    inverse_values, turn = scipy.linalg.eigh(found.T @ (inertia @ found), found.T @ (solver.stiffness @ found))
+    inverse_values, turn = scipy.linalg.eigh(result.T @ (inertia @ result), result.T @ (solver.stiffness @ result))
     kept = np.flatnonzero(inverse_values > _MASSLESS * inverse_values[-1])[::-1]
-    return 1.0 / inverse_values[kept], found @ turn[:, kept] / np.sqrt(inverse_values[kept])
+    return 1.0 / inverse_values[kept], result @ turn[:, kept] / np.sqrt(inverse_values[kept])
 
 
 def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
-    """The least mu (k,) of T x = mu K x, ascending, and their shapes (n, k) of unit energy x^T K x; the start is always the same.
+    """Compute the smallest mu (k,) of T x = mu K x, ascending, and shapes (n, k) with x^T K x = 1; the start vector is constant.
 
-    Fewer than `count` where those beyond the least lie too close together to converge, as many near zero do.
+    Fewer than `count` if the values beyond the smallest are too close to converge, e.g. many near zero.
     """
     size = taken.rows.shape[1]
     stiffness, inverse = (
@@ -266,10 +266,10 @@ def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, A
     )
     ways = {"which": "SA", "tol": _RATIO, "maxiter": _RESTARTS, "v0": 1.0 + 0.5 * np.cos(np.arange(size))}
     try:
-        found = scipy.sparse.linalg.eigsh(taken.matrix, min(count, size - 1), stiffness, Minv=inverse, **ways)[1]
+        result = scipy.sparse.linalg.eigsh(taken.matrix, min(count, size - 1), stiffness, Minv=inverse, **ways)[1]
     except scipy.sparse.linalg.ArpackNoConvergence as error:
-        found = error.eigenvectors
-        if not found.shape[1]:
-            raise refuse("stage", "its least load factor is not found: no eigenvalue converges", "Look at its loads one by one") from None
-    values, turn = scipy.linalg.eigh(found.T @ (taken @ found), found.T @ (solver.stiffness @ found))
-    return cast("Array", values), found @ turn
+        result = error.eigenvectors
+        if not result.shape[1]:
+            raise refuse("stage", "no eigenvalue converges to the lowest load factor", "Analyse its loads one by one") from None
+    values, turn = scipy.linalg.eigh(result.T @ (taken @ result), result.T @ (solver.stiffness @ result))
+    return cast("Array", values), result @ turn

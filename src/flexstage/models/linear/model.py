@@ -1,4 +1,4 @@
-"""LinearModel: what every elastic model ends in."""
+"""Linear model: the result of every elastic model."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from flexstage.mechanism.mechanism import Damping
 from flexstage.models.linear.large import Quadratic, Solver
 
 _DENSE = 3000
-"""Freedoms up to which dense matrices of a sparse model are made: all its modes take a minute."""
+"""Number of coordinates up to which a sparse model makes dense matrices: all its modes take a minute."""
 WIDE = 128
-"""Coordinates from which on each part's share is worked out for those that strain it alone: one product of all is slower then."""
+"""Number of coordinates above which each part is assembled over the coordinates that strain it; below, one full product is faster."""
 
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """One part's share of a matrix: `operator`^T `law` `operator`, operator (..., r, n), law (..., r, r)."""
+    """Contribution of one part to a matrix: `operator`^T `law` `operator`, operator (..., r, n), law (..., r, r)."""
 
     operator: Array
     law: Array
@@ -47,22 +47,29 @@ Contributions: TypeAlias = Mapping[str, Contribution]
 class LinearModel(CheckedFields):
     """M q'' + D q' + K q = B u - M_u u'', y = C q + D u, with K and M as named sums of contributions.
 
-    `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m)
-    an input imposes (the free stroke of a stack): B = force + sum G^T k imposed. `output` (..., p, n) and `feedthrough` (..., p, m).
-    `rigid` (..., n, 6) is the motion of all coordinates with the ground (its twist given at the platform's reference), `rigid_output`
-    (..., p, 6) that of the outputs, `base_inertia` (..., n, 6) the inertial force per unit base acceleration. `inertial` (..., n, m) is
-    M_u, what inputs that impose a motion accelerate (absent: none do). `unknown` names outputs that the model cannot tell: forces of locked
-    freedoms. Batch axes lead, and only where something varies: an array without them holds for every design.
+    - `force` (..., n, m): direct generalised forces of the inputs.
+    - `imposed`: per stiffness contribution the deformation (..., r, m) that an input imposes (the free stroke of a stack): B = force + sum
+      G^T k imposed.
+    - `output` (..., p, n) and `feedthrough` (..., p, m).
+    - `rigid` (..., n, 6): motion of all coordinates with the ground (its twist at the platform's reference); `rigid_output` (..., p, 6): of
+      the outputs.
+    - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
+    - `inertial` (..., n, m): M_u, the inertia that imposed motions of inputs accelerate (absent: zero).
+    - `unknown`: outputs that the model does not determine, forces of locked freedoms.
 
-    `viscous` are the dampers (..., d, d) [N s/m] that parts state, by stiffness contribution: they resist the rate of its deformation, G q
-    less what is imposed, in its first d rows, beside the damping law of the whole. Link forces are told without theirs.
+    Batch axes lead, and only where something varies: an array without them is valid for every design.
 
-    `idle` names coordinates that no stiffness holds. They are left out with their zero modes: what is kept is M-orthogonal to them, so that
-    neither frequencies nor shapes depend on which were named. `idle_output` (..., p, k) is how the outputs see the k idle motions,
-    `idle_inertia` (..., k, 6) what accelerating the ground exerts on them (both absent: there are none).
+    `viscous` are the dampers (..., d, d) [N s/m] of parts, by stiffness contribution. They resist the rate of its deformation, G q less the
+    imposed one, in its first d rows, in addition to the damping law of the model. Link forces exclude dampers.
 
-    A model of a large stage `is_sparse`: its operators and outputs hold no zeros (`flexstage.base.sparse`), `solve` and `momenta` use no
-    dense matrix, and K and M are made when they are asked for.
+    `idle` names coordinates without stiffness. They are removed with their zero modes: the kept ones are M-orthogonal to them, so that
+    frequencies and shapes do not depend on their choice.
+
+    `idle_output` (..., p, k) are the outputs of the k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground
+    acceleration (both absent: none).
+
+    The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`), `solve` and `momenta` use no dense
+    matrix, and K and M are assembled on request.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.lumped(stage)")
@@ -102,22 +109,22 @@ class LinearModel(CheckedFields):
     def _require_dense(self) -> None:
         size = len(self.coordinates)
         if self.is_sparse and size > _DENSE:
-            what = f"it has {size:,} freedoms, and this needs their dense matrices, which are given up to {_DENSE:,}"
-            raise refuse("stage", what, "Ask for stiffness, modes, deflection or drift, which do without, or read parts of the stage")
+            what = f"too many coordinates for dense matrices (got {size:,}, maximum {_DENSE:,})"
+            raise refuse("stage", what, "Compute stiffness, modes, deflection or drift, or analyse parts of the stage")
 
     @property
     def is_sparse(self) -> bool:
-        """Whether operators and outputs are kept without their zeros, of one design."""
+        """Whether operators and outputs are sparse, of one design."""
         return isinstance(self.output, Rows)
 
     @cached_property
     def solver(self) -> Solver:
-        """What solves K q = f of a model that is sparse."""
+        """Solver of K q = f of a sparse model."""
         return Solver(self._quadratic(self.stiffness))
 
     @cached_property
     def masses(self) -> Quadratic:
-        """M of a model that is sparse."""
+        """M of a sparse model."""
         return self._quadratic(self.inertia)
 
     def _quadratic(self, contributions: Contributions) -> Quadratic:
@@ -129,18 +136,18 @@ class LinearModel(CheckedFields):
         return self.solver.solve(load) if self.is_sparse else np.linalg.solve(self.stiffness_matrix, load)
 
     def follow(self, strains: Mapping[str, Array]) -> Array:
-        """The motion (..., n, k) of least energy under strains (..., r, k) by part that come on top of its own, -K^-1 sum G^T k strain."""
+        """Compute the motion (..., n, k) of least energy for strains (..., r, k) by part in addition to its own, -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
         forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())
         return np.linalg.solve(self.stiffness_matrix, -sum(forces, np.zeros((len(self.coordinates), 1))))
 
     def momenta(self, motion: Array) -> Array:
-        """M times a motion (..., n, k)."""
+        """Multiply M by a motion (..., n, k)."""
         return self.masses @ motion if self.is_sparse else self.inertia_matrix @ motion
 
     def seen(self, rows: list[int], motion: Array) -> Array:
-        """Outputs (..., p, k) of some rows for a motion (..., n, k). Rows of a large stage are taken after the product: they are long."""
+        """Compute outputs (..., p, k) of some rows for a motion (..., n, k); in a large stage by row selection after the product."""
         return (self.output @ motion)[rows] if self.is_sparse else self.output[..., rows, :] @ motion
 
     @property
@@ -155,7 +162,7 @@ class LinearModel(CheckedFields):
 
     @property
     def loss_matrix(self) -> Array:
-        """What structural damping adds to B, (..., n, m), to be taken times j: an imposed deformation is lost like any other."""
+        """Compute the contribution of structural damping to B (..., n, m), times j: an imposed deformation has the same loss."""
         return self._of_imposed(lost=True)
 
     def _of_imposed(self, *, lost: bool) -> Array:
@@ -167,7 +174,7 @@ class LinearModel(CheckedFields):
         return total
 
     def output_index(self, names: tuple[str, ...]) -> list[int]:
-        """Positions of outputs by name; raises `DesignError` for names of none."""
+        """Return positions of outputs by name; raises `DesignError` for unknown names."""
         return _places(names, self._output_places, "output")
 
     @cached_property
@@ -175,7 +182,7 @@ class LinearModel(CheckedFields):
         return {channel.name: index for index, channel in enumerate(self.outputs)}
 
     def input_index(self, names: tuple[str, ...]) -> list[int]:
-        """Positions of inputs by name; raises `DesignError` for names of none."""
+        """Return positions of inputs by name; raises `DesignError` for unknown names."""
         return _places(names, {channel.name: index for index, channel in enumerate(self.inputs)}, "input")
 
     @property
@@ -185,7 +192,7 @@ class LinearModel(CheckedFields):
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """Names of the actuators' inputs, strokes and forces; all others are components of wrenches."""
+        """Names of the actuator inputs, strokes and forces; all others are components of wrenches."""
         return tuple(channel.name for channel in self.inputs if "." not in channel.name)
 
 
@@ -195,7 +202,7 @@ def _places(names: tuple[str, ...], known: Mapping[str, int], kind: str) -> list
 
 
 def _unknown(name: str, known: Iterable[str], kind: str) -> Finding:
-    """The finding of a name that no channel has, or, where all of its components are unknown, of its point."""
+    """The error for a name without a channel or, if all of its components are unknown, for its point."""
     owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in known} - {""}
     if not owner or owner in owners:
         return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, known))
@@ -203,7 +210,7 @@ def _unknown(name: str, known: Iterable[str], kind: str) -> Finding:
 
 
 def assemble(contributions: Contributions, size: int) -> Array:
-    """Sum of contributions as one matrix (..., n, n), symmetric by construction.
+    """Assemble contributions to one matrix (..., n, n), symmetric by construction.
 
     >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
     >>> assemble({"a": half, "b": half}, 2).tolist()
@@ -221,7 +228,7 @@ def assemble(contributions: Contributions, size: int) -> Array:
 
 
 def _sum_by_columns(contributions: Contributions, size: int) -> Array:
-    """The sum (..., n, n), by the coordinates alone that strain each part."""
+    """The sum (..., n, n), each part over the coordinates that strain it."""
     arrays = [each for item in contributions.values() for each in (item.operator, item.law)]
     batch = np.broadcast_shapes(*(each.shape[:-2] for each in arrays))
     total = np.zeros((*batch, size, size), dtype=np.result_type(*arrays))
@@ -234,7 +241,7 @@ def _sum_by_columns(contributions: Contributions, size: int) -> Array:
 
 
 def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) -> Array:
-    """Generalised forces (..., n, k) of given strains (..., r, k): sum of operator^T law strain over the contributions.
+    """Compute generalised forces (..., n, k) of given strains (..., r, k): sum of operator^T law strain over the contributions.
 
     >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
     >>> strain_forces({"a": half, "b": half}, {"a": np.array([[2.0]]), "b": np.array([[4.0]])}).tolist()
@@ -249,7 +256,7 @@ def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) ->
 
 
 def _freeze(matrix: Array) -> Array:
-    """A matrix that whoever is given it cannot change for others."""
+    """Make a matrix read-only."""
     matrix.flags.writeable = False
     return matrix
 
@@ -264,7 +271,7 @@ def _transpose(matrix: Array) -> Array:
 
 
 def label(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
-    """A matrix from the model's inputs to outputs, with units from its channels.
+    """Label a matrix from the model's inputs to outputs, with units from its channels.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -1,4 +1,4 @@
-"""Ports: the inputs and outputs of a linear model picked by name, wrenches on any body and motion of the ground included."""
+"""Ports: inputs and outputs of a linear model selected by name, including wrenches on any body and ground motion."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True, eq=False)
 class Ports:
-    """Chosen inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
+    """Selected inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
 
-    `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m). For motions of the ground, z is relative
-    to the ground, y absolute; `inertial` is zero for inputs that impose no motion. `lost` (..., n, m) is what structural damping adds to
-    the force, times j (see `LinearModel.lost_matrix`), `loss` (..., p) the loss factor of the link whose force an output is, else zero.
+    - `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m).
+    - For ground motion, z is relative to the ground, y absolute; `inertial` is zero for inputs that impose no motion.
+    - `lost` (..., n, m): contribution of structural damping to the force, times j (see `LinearModel.loss_matrix`).
+    - `loss` (..., p): loss factor of the link whose force an output is, else zero.
     """
 
     inputs: tuple[Channel, ...]
@@ -35,12 +36,15 @@ class Ports:
 
 
 def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterable[str]) -> Ports:
-    """Pick outputs and inputs by name.
+    """Select outputs and inputs by name.
 
-    A name is that of a channel (`platform.x`, `S1`, `B4/pivot.mz`), or of a group: `platform` means its six components. Inputs are the
-    model's own (strokes; wrenches on platform and points), a wrench component on any body whose twist is an output (`B1/tip.fx`, at the
-    body's reference point, stage axes), and the ground's absolute motion `ground.x` ... `ground.rz` (m, rad; given at the platform's
-    reference point). Raises `DesignError` for every unknown name, with the nearest known ones.
+    A name is a channel (`platform.x`, `S1`, `B4/pivot.mz`) or a group: `platform` means its six components. Inputs are:
+
+    - the model inputs (strokes; wrenches on platform and points);
+    - wrench components on any body whose twist is an output (`B1/tip.fx`, at the reference point of the body, stage axes);
+    - absolute ground motion `ground.x` ... `ground.rz` (m, rad; at the platform's reference point).
+
+    Raises `DesignError` for every unknown name, with the most similar known ones.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -53,7 +57,7 @@ def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterab
     sources = {channel.name: number for number, channel in enumerate(model.inputs)}
     columns = _expand_groups(inputs, (*sources, *_further_inputs(model)), "input")
     named = {"outputs": rows, "inputs": columns}
-    require(Finding(kind, "none is named", "Name at least one") for kind, names in named.items() if not names)
+    require(Finding(kind, "no name given", "Name at least one") for kind, names in named.items() if not names)
     picked = [known[name] for name in rows]
     require_known(model, rows)
     require_held(model, rows, columns)
@@ -71,7 +75,7 @@ def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterab
 
 
 def input_names(model: LinearModel) -> tuple[str, ...]:
-    """All names `ports` accepts as inputs, groups excluded.
+    """List all names that `ports` accepts as inputs, without groups.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -90,13 +94,13 @@ def _further_inputs(model: LinearModel) -> tuple[str, ...]:
 
 
 def _twists(model: LinearModel) -> list[str]:
-    """Outputs that are components of a body's or point's twist."""
+    """Outputs that are components of a body or point twist."""
     names = [channel.name for channel in model.outputs if channel.name.rpartition(".")[2] in COMPONENTS]
     return [name for name in names if name.rpartition(".")[0]]
 
 
 def _expand_groups(names: str | Iterable[str], known: tuple[str, ...], kind: str) -> list[str]:
-    """Groups written out; unknown names refused together."""
+    """Expand groups; raises for all unknown names together."""
     result: list[str] = []
     findings: list[Finding] = []
     members: dict[str, list[str]] = {}

@@ -1,4 +1,4 @@
-"""State space of a linear model, for controllers and other programs."""
+"""State-space form of a linear model, for controllers and other programs."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ from flexstage.models.linear.port import Ports
 class StateSpace:
     """x' = A x + B u, y = C x + D u with A (..., 2k, 2k), B (..., 2k, m), C (..., p, 2k), D (..., p, m), SI.
 
-    `states` are modal coordinates `mode1`, ... and their rates `mode1'`, ...; `ratios` (..., k) the damping ratios used, `note` says what
-    was simplified on the way.
+    `states` are modal coordinates `mode1`, ... and their rates `mode1'`, ...; `ratios` (..., k) are the damping ratios.
+
+    `note` lists the simplifications.
     """
 
     A: Array
@@ -36,25 +37,27 @@ class StateSpace:
     provenance: str
 
     def transfer(self, frequencies: Array) -> Array:
-        """H = C (j omega - A)^-1 B + D (..., f, p, m) at `frequencies` (f,) in Hz."""
+        """Compute H = C (j omega - A)^-1 B + D (..., f, p, m) at `frequencies` (f,) in Hz."""
         shifted = 2j * np.pi * np.asarray(frequencies)[:, None, None] * np.eye(self.A.shape[-1]) - self.A[..., None, :, :]
         load = np.broadcast_to(self.B[..., None, :, :], (*shifted.shape[:-2], *self.B.shape[-2:]))
         return self.C[..., None, :, :] @ np.linalg.solve(shifted, load) + self.D[..., None, :, :]
 
     def to_dict(self) -> dict[str, Any]:
-        """The matrices and names as a plain dictionary, ready for `scipy.io.savemat`."""
+        """Return the matrices and names as a plain dictionary, ready for `scipy.io.savemat`."""
         names = {"inputs": self.inputs, "outputs": self.outputs}
         labels = {key: [f"{channel.name} [{channel.unit}]" for channel in channels] for key, channels in names.items()}
         return {"A": self.A, "B": self.B, "C": self.C, "D": self.D, "states": list(self.states), **labels, "note": self.note}
 
 
 def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int | None = None) -> StateSpace:
-    """Modal state space between chosen ports, with the lowest `modes` modes (absent: all) and the rest as a static term in D.
+    """Build the modal state space between chosen ports, with the lowest `modes` modes (absent: all) and the others as a static term in D.
 
-    eta'' + R eta' + omega^2 eta = Phi^T B u - Phi^T M_b u'', R = 2 zeta omega and between modes what dampers of parts resist, Phi^T D Phi.
-    A ground displacement as input is absorbed into the states, eta + Phi^T M_b u, so that no input is differentiated. Modal damping is
-    exact; Rayleigh damping is exact but for the freedoms left out; structural damping has no time-domain form: each mode takes its
-    equivalent ratio, and `note` says so.
+    eta'' + R eta' + omega^2 eta = Phi^T B u - Phi^T M_b u'', with R = 2 zeta omega plus the dampers of parts, Phi^T D Phi.
+
+    A ground displacement as input is absorbed into the states, eta + Phi^T M_b u, so that no input is differentiated.
+
+    Modal damping is exact; Rayleigh damping is exact except for omitted coordinates. Structural damping has no time-domain form: each mode
+    has its equivalent ratio, as listed in `note`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -68,15 +71,15 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
     omega = np.sqrt(solved.values)
     rate = _square(2.0 * law_ratios(model, solved, damping) * omega) + viscous_coupling(model, solved)
     force, inertial = modal_forces(solved, chosen)
-    seen = chosen.output @ solved.shapes
+    output = chosen.output @ solved.shapes
     carried = rate @ inertial + _damped_by_inputs(model, solved, chosen)
     lower = force + solved.values[..., None] * inertial - rate @ carried
-    zero = np.zeros_like(seen)
+    zero = np.zeros_like(output)
     return StateSpace(
         A=_dynamics(solved.values, rate),
         B=np.concatenate(np.broadcast_arrays(carried, lower), axis=-2),
-        C=np.concatenate([seen, zero], axis=-1),
-        D=chosen.feedthrough + residual(model, solved, chosen) - seen @ inertial,
+        C=np.concatenate([output, zero], axis=-1),
+        D=chosen.feedthrough + residual(model, solved, chosen) - output @ inertial,
         states=tuple(f"mode{number + 1}{mark}" for mark in ("", "'") for number in range(omega.shape[-1])),
         inputs=chosen.inputs,
         outputs=chosen.outputs,
@@ -95,7 +98,7 @@ def _square(diagonal: Array) -> Array:
 
 
 def _damped_by_inputs(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
-    """What dampers exert on the modes per rate of the inputs (..., k, m): imposed deformations are damped like any other."""
+    """Forces of dampers on the modes per rate of the inputs (..., k, m): imposed deformations are damped too."""
     total: Array = np.zeros((solved.shapes.shape[-1], len(chosen.inputs)))
     for name, law in model.viscous.items():
         strain = model.stiffness[name].operator[..., : law.shape[-1], :] @ solved.shapes
@@ -114,7 +117,7 @@ def _dynamics(values: Array, rate: Array) -> Array:
 
 
 def _note(model: LinearModel, damping: Damping, modes: int | None) -> str:
-    dampers = f"; dampers of {', '.join(model.viscous)} between the modes that are kept" if model.viscous else ""
+    dampers = f"; dampers of {', '.join(model.viscous)} between the retained modes" if model.viscous else ""
     return f"{_law_note(damping, modes)}{dampers}"
 
 

@@ -1,4 +1,4 @@
-"""Static solves of a linear model."""
+"""Static solutions of a linear model."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.models.linear.undetermined import require_known, require_still, r
 
 
 def displacement(model: LinearModel, load: Array) -> Array:
-    """Coordinates q = K^-1 load (..., n, k) under generalised forces (..., n, k).
+    """Compute coordinates q = K^-1 load (..., n, k) under generalised forces (..., n, k).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -24,9 +24,9 @@ def displacement(model: LinearModel, load: Array) -> Array:
 
 
 def input_motion(model: LinearModel, columns: list[int], amounts: Array | None = None) -> Array:
-    """Coordinates q = K^-1 B u (..., n, k) of the inputs in some columns, of one unit each or of `amounts` (..., columns, k).
+    """Compute coordinates q = K^-1 B u (..., n, k) of the inputs in some columns, of one unit each or of `amounts` (..., columns, k).
 
-    What strokes impose on a large stage enters as strains: a long chain would lose by rounding that the forces of a stroke fit together.
+    Strokes of a large stage are imposed as strains: as forces, rounding in a long chain would destroy their balance.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -48,7 +48,7 @@ def input_motion(model: LinearModel, columns: list[int], amounts: Array | None =
 
 
 def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str, ...]) -> Matrix:
-    """Static response C K^-1 B + D of named outputs to named inputs.
+    """Compute the static gain C K^-1 B + D of named outputs to named inputs.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -65,7 +65,7 @@ def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str,
 
 
 def part_deformation(model: LinearModel, motion: Array, inputs: Array | None = None) -> dict[str, Array]:
-    """Elastic deformation of every part (..., r, k): G q - imposed u, for coordinates (..., n, k) and inputs u (..., m, k).
+    """Compute the elastic deformation of every part (..., r, k): G q - imposed u, for coordinates (..., n, k) and inputs u (..., m, k).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -1,4 +1,4 @@
-"""What a model leaves undetermined, told by name and never chosen: idle motions, held by no stiffness, and forces of locked freedoms."""
+"""Quantities that a model does not determine, refused by name: free internal modes (zero stiffness), and forces of locked freedoms."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ADVICE = "Give a link of these bodies stiffness in that freedom, or lock it"
 
 
 def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
-    """Refuse forces of locked freedoms: no spring feels them.
+    """Refuse forces of locked freedoms, which no elastic deformation determines.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -27,30 +27,30 @@ def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
     """
     unknown = set(model.unknown)
     require(
-        Finding(name, "its force is not known: this freedom of the link is locked, and no spring feels what it passes", "Give it stiffness")
+        Finding(name, "unknown force, as this freedom of the link is locked", "Give the freedom a stiffness")
         for name in outputs
         if name in unknown
     )
 
 
 def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
-    """Refuse gauges that see an idle motion: at rest nothing tells how far it has gone. Twists of the idle bodies themselves may be asked.
+    """Refuse gauges that see a free internal mode, whose static displacement is undetermined; twists of the idle bodies are permitted.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
     >>> require_still(lumped(parallelogram()), ["S"])
     """
-    seen = _idle_seen(model)
+    visible = _idle_seen(model)
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
     require(
-        Finding(name, f"this gauge sees an idle motion that no stiffness holds: {_names(model)}", f"{_ADVICE}, or move the gauge")
+        Finding(name, f"this gauge sees a free internal mode (zero stiffness): {_names(model)}", f"{_ADVICE}, or move the gauge")
         for name in outputs
-        if number[name] in seen and name.rpartition(".")[2] not in (*COMPONENTS, *FORCES)
+        if number[name] in visible and name.rpartition(".")[2] not in (*COMPONENTS, *FORCES)
     )
 
 
 def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
-    """Refuse wrenches that drive an idle motion: they have no answer at rest.
+    """Refuse wrenches that drive a free internal mode, for which no static response exists.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -58,34 +58,33 @@ def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
     """
     driving = _driving(model)
     require(
-        Finding(name, f"it drives an idle motion that no stiffness holds: {_names(model)}", f"{_ADVICE}, or load another body")
+        Finding(name, f"drives a free internal mode (zero stiffness): {_names(model)}", f"{_ADVICE}, or load another body")
         for name in inputs
         if name in driving
     )
 
 
 def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> None:
-    """Refuse wrenches that drive an idle motion which one of the outputs sees: that one moves without bound.
+    """Refuse wrenches that drive a free internal mode that one of the outputs sees: its displacement is unbounded.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
     >>> require_held(lumped(parallelogram()), ["S"], ["corner.fx"])
     """
-    seen, driving = _idle_seen(model), _driving(model)
+    visible, driving = _idle_seen(model), _driving(model)
     number = {channel.name: index for index, channel in enumerate(model.outputs)}
-    watched = {motion for name in outputs for motion in seen.get(number[name], ())}
+    watched = {motion for name in outputs for motion in visible.get(number[name], ())}
     require(
-        Finding(name, f"it drives an idle motion that an output sees and no stiffness holds: {_names(model)}", _ADVICE)
+        Finding(name, f"drives a free internal mode (zero stiffness) that an output sees: {_names(model)}", _ADVICE)
         for name in inputs
         if watched & driving.get(name, set())
     )
 
 
 def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int] | None = None) -> None:
-    """Refuse a load at rest that drives an idle motion: there is no equilibrium.
+    """Refuse a static load that drives a free internal mode: no equilibrium exists.
 
-    `load` is a twist's conjugate wrench (6,) on the body whose twist the output `rows` are, or, without rows, the acceleration of gravity
-    (6,).
+    `load` is a wrench (6,) on the body whose twist is the output `rows` or, without rows, the acceleration of gravity (6,).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -100,28 +99,28 @@ def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int
     else:
         motions = np.real(first_design(model.idle_output, 2))
         works = motions[rows].T
-        # by what the motion does to any output: of a body that takes no part in it, only rounding is seen
+        # relative to the largest output of the motion: bodies outside it see only rounding
         least = _TENTH * np.max(np.abs(motions), axis=0) * np.linalg.norm(load / _METRE)
     if np.any(np.abs(works @ load) > _SEEN * least):
-        raise refuse(where, f"it drives an idle motion that no stiffness holds, so there is no rest: {_names(model)}", _ADVICE)
+        raise refuse(where, f"drives a free internal mode (zero stiffness), so that no equilibrium exists: {_names(model)}", _ADVICE)
 
 
 def _idle_seen(model: LinearModel) -> dict[int, set[int]]:
-    """The idle motions that each output sees, by number."""
+    """Free internal modes that each output sees, by number."""
     if model.idle_output is None:
         return {}
     first = np.abs(np.real(first_design(model.idle_output, 2)))
-    found = first > _SEEN * np.max(first, axis=0, initial=0.0)
-    return {int(row): set(np.flatnonzero(found[row]).tolist()) for row in np.flatnonzero(found.any(axis=1))}
+    visible = first > _SEEN * np.max(first, axis=0, initial=0.0)
+    return {int(row): set(np.flatnonzero(visible[row]).tolist()) for row in np.flatnonzero(visible.any(axis=1))}
 
 
 def _driving(model: LinearModel) -> dict[str, set[int]]:
-    """The idle motions that a wrench drives, by the wrench's name: it does work on the twists that see them."""
+    """Free internal modes that a wrench drives, by its name: it does work on the twists that see them."""
     return dict(_pairs(model.outputs, _idle_seen(model)))
 
 
-def _pairs(outputs: tuple[Channel, ...], seen: dict[int, set[int]]) -> Iterator[tuple[str, set[int]]]:
-    for row, motions in seen.items():
+def _pairs(outputs: tuple[Channel, ...], visible: dict[int, set[int]]) -> Iterator[tuple[str, set[int]]]:
+    for row, motions in visible.items():
         owner, _, component = outputs[row].name.rpartition(".")
         if component in COMPONENTS:
             yield f"{owner}.{FORCES[COMPONENTS.index(component)]}", motions

@@ -1,1 +1,1 @@
-"""Large displacements: equilibrium, stiffness, stability and modes of stages away from the drawn position."""
+"""Large displacements: equilibrium, stiffness, stability and modes of stages away from the nominal position."""

@@ -1,4 +1,4 @@
-"""A stage's tables and cases as the kernel in C takes them, and what it finds."""
+"""Interface to the compiled kernel in C: tables and cases of a stage, and the results."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions
 
 _MOST = {"points": 24, "modes": 48, "fields": 24, "unknowns": 150}
-"""What the kernel has room for; and unknowns of bodies, beyond which LAPACK's blocks are faster than lanes."""
+"""Capacity of the kernel, and number of body unknowns beyond which LAPACK's blocks are faster than lanes."""
 _GROUP_SIZES = ("links", "points", "twist", "across", "bending", "fields")
 _GROUP_TABLES = ("weights", "running", "steps", "left", "phi", "inner", "form", "rest", "plate", "compliance", "scalar")
 _GROUP_PLACES = ("joins", "turn", "first", "second", "strain", "wrench")
@@ -54,7 +54,7 @@ class _Task(ctypes.Structure):
 
 @dataclass(frozen=True, eq=False)
 class Ended:
-    """Poses of b cases after their iterations, with `status`, `count` of iterations, the last step `moved` and the last `lack` (b,)."""
+    """Poses of b cases after their iterations, with `status`, `count` of iterations, last step `moved` and last residual `lack` (b,)."""
 
     pose: Pose
     status: Array
@@ -65,7 +65,7 @@ class Ended:
 
 @dataclass(frozen=True, eq=False)
 class Tables:
-    """A stage as the kernel takes it: sizes and tables of each group of flexures, by name."""
+    """Kernel input of a stage: sizes and tables of each group of flexures, by name."""
 
     sizes: tuple[Mapping[str, int], ...]
     arrays: tuple[Mapping[str, Array], ...]
@@ -73,10 +73,10 @@ class Tables:
 
 @functools.cache
 def kernel() -> ctypes.CDLL | None:
-    """The library; `None` where there is none.
+    """Load the library, or return `None` if there is none.
 
-    >>> found = kernel()
-    >>> found is None or found.flexstage_equilibria_width() in (2, 4, 8)
+    >>> result = kernel()
+    >>> result is None or result.flexstage_equilibria_width() in (2, 4, 8)
     True
     """
     library = kernel_library(Path(__file__).with_name("kernel.c"))
@@ -87,24 +87,24 @@ def kernel() -> ctypes.CDLL | None:
 
 @SESSION.keep(64)
 def tables(model: Nonlinear) -> Tables | None:
-    """The stage's tables; `None` where it has something that the kernel does not know.
+    """Build the kernel tables of a stage, or return `None` if the kernel does not support it.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> [sizes["links"] for sizes in tables(nonlinear(parallelogram())).sizes]
     [2, 2]
     """
-    found = [_group(group) for group in model.flexures]
-    if model.freedoms > _MOST["unknowns"] or not found or None in found:
+    groups = [_group(group) for group in model.flexures]
+    if model.freedoms > _MOST["unknowns"] or not groups or None in groups:
         return None
-    known = [each for each in found if each is not None]
+    known = [each for each in groups if each is not None]
     return Tables(tuple(sizes for sizes, _ in known), tuple(arrays for _, arrays in known))
 
 
 def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, rest: Rest | None) -> Ended:
-    """The iterations of every case, in C; with a `rest`, which holds at these poses, at most one. Needs `kernel` and `tables`.
+    """Iterate every case in C; with a `rest`, valid at these poses, at most once. Requires `kernel` and `tables`.
 
-    The same as `newton.iterate`, but for rounding, to the bit independent of what cases are computed together.
+    Equal to `newton.iterate` up to rounding; to the bit independent of the other cases of a call.
     """
     library = kernel()
     assert library is not None  # noqa: S101  (the caller has asked)
@@ -112,17 +112,17 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: Solve
     pose = Pose(
         _copy(start.position), _copy(start.turn), tuple(map(_copy, start.strain)), tuple(map(_copy, start.wrench)), _copy(start.held)
     )
-    told = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
-    given = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
-    held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | told | given
+    results = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
+    terms = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
+    held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | results | terms
     groups, settings = _groups(model, pose), (model.size, model.reach, options.step, options.gap, options.limit)
     sizes = (cases, len(model.bodies), pose.held.shape[1], len(groups), len(held["body"]), options.iterations, int(np.any(loads.gravity)))
     task: Any = _Task()
     _fill(task, dict(zip((*_SIZES, *_SETTINGS), (*sizes, *settings), strict=True)), held)
     task.group = ctypes.addressof(groups)
     if library.flexstage_equilibria(ctypes.byref(task)):
-        told["status"][:], told["moved"][:] = 2, np.nan
-    return Ended(pose, **told)
+        results["status"][:], results["moved"][:] = 2, np.nan
+    return Ended(pose, **results)
 
 
 def _groups(model: Nonlinear, pose: Pose) -> Any:
@@ -165,17 +165,21 @@ def _group(group: Flexures) -> tuple[Mapping[str, int], Mapping[str, Array]] | N
         *(np.moveaxis(np.sum(each, axis=-2), -1, -2) for each in (law.modes, law.inner)),
         *(law.form, law.rest, law.plate, law.compliance, np.stack(scalar, axis=-1), group.turn, group.arm_first, group.arm_second),
     )
-    found: dict[str, Array] = {name: _copy(each) for name, each in zip((*_GROUP_TABLES, "turn", "first", "second"), arrays, strict=True)}
-    found["joins"] = np.stack([group.first, group.second], axis=-1).astype(np.int64, order="C")
+    group_tables: dict[str, Array] = {
+        name: _copy(each) for name, each in zip((*_GROUP_TABLES, "turn", "first", "second"), arrays, strict=True)
+    }
+    group_tables["joins"] = np.stack([group.first, group.second], axis=-1).astype(np.int64, order="C")
     sizes = (len(group.names), points, *counts, count)
-    return dict(zip(_GROUP_SIZES, sizes, strict=True)), found
+    return dict(zip(_GROUP_SIZES, sizes, strict=True)), group_tables
 
 
 def _axes(law: FlexureLaw) -> tuple[int, ...] | None:
-    """How many modes twist, bend about y and about z, where they come in this order, each about one axis, without forms between axes."""
-    seen = np.any(law.modes != 0.0, axis=tuple(range(law.modes.ndim - 2))) | np.any(law.inner != 0.0, axis=tuple(range(law.inner.ndim - 2)))
-    axis = np.argmax(seen, axis=0)
-    if np.any(np.sum(seen, axis=0) != 1) or np.any(np.diff(axis) < 0):
+    """Numbers of modes for twist and bending about y and z, if they are in this order, each about one axis, and decoupled."""
+    nonzero = np.any(law.modes != 0.0, axis=tuple(range(law.modes.ndim - 2))) | np.any(
+        law.inner != 0.0, axis=tuple(range(law.inner.ndim - 2))
+    )
+    axis = np.argmax(nonzero, axis=0)
+    if np.any(np.sum(nonzero, axis=0) != 1) or np.any(np.diff(axis) < 0):
         return None
     count = len(axis)
     apart = axis[:, None] != axis
@@ -183,12 +187,12 @@ def _axes(law: FlexureLaw) -> tuple[int, ...] | None:
 
 
 def _unknown(law: FlexureLaw) -> bool:
-    """Whether a law has tables that the kernel does not know, and that are not zero."""
+    """Whether a law has non-zero tables that the kernel does not support."""
     others = (getattr(law, each.name) for each in fields(law) if each.name not in _KNOWN)
     bent_across = np.any(law.form[..., law.modes.shape[-1] :, : law.modes.shape[-1]][..., _across(law)])
     return bool(bent_across) or any(each is not None and bool(np.any(each)) for each in others)
 
 
 def _across(law: FlexureLaw) -> Array:
-    """Which modes bend about y: with these the plate's fields must not couple."""
+    """Modes that bend about y, which must not couple with the plate fields."""
     return np.any(law.modes[..., 1, :] != 0.0, axis=tuple(range(law.modes.ndim - 2)))

@@ -1,4 +1,4 @@
-"""Where a stage comes to rest under loads, strokes and its weight."""
+"""Static equilibrium of a stage under loads, strokes and its weight."""
 
 from __future__ import annotations
 
@@ -22,19 +22,21 @@ from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.spatial.rotation import logarithm
 
-LESS = "Load it less, or ask flexstage buckle what gives way"
+LESS = "Reduce the load, or compute the buckling mode with flexstage buckle"
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A stage at rest under loads, in cases of any shape (...).
+    """Static equilibrium of a stage under loads, in cases of any shape (...).
 
-    `status` tells how each search ended, `iterations` and `residual` (over lengths and stiffnesses) what it took. Where a case did not
-    converge its numbers are NaN, `reached` is the largest share of its load for which an equilibrium was found, and `reasons` says so.
-    `reactions` (..., h) are what holds the `held` coordinates [N, N m].
+    `status` is how each solution ended, after `iterations` and with `residual` (over lengths and stiffnesses).
+
+    A case that did not converge is NaN. `reached` is its largest load fraction with an equilibrium, and `reasons` has the message.
+
+    `reactions` (..., h) act on the `held` coordinates [N, N m].
     """
 
-    WRITTEN: ClassVar[tuple[str, str]] = ("a state of equilibrium", "fs.equilibrium(fs.nonlinear(stage))")
+    WRITTEN: ClassVar[tuple[str, str]] = ("an equilibrium state", "fs.equilibrium(fs.nonlinear(stage))")
     model: Nonlinear
     loads: Loads
     hold: Hold
@@ -48,55 +50,55 @@ class State:
 
     @property
     def converged(self) -> Array:
-        """Which cases (...) found their equilibrium."""
+        """Which cases (...) converged."""
         return self.status == Status.CONVERGED
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why each case has no numbers, in the order of `status.ravel()`; empty where it has."""
+        """Why each case has no result, in the order of `status.ravel()`; empty if it has one."""
         return tuple(
             why_without(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True)
         )
 
     @property
     def reactions(self) -> Array:
-        """Forces and moments (..., h) that hold the held coordinates [N, N m]; what the holder exerts on the stage."""
+        """Reaction forces and moments (..., h) on the stage at the fixed coordinates [N, N m]."""
         count = self.pose.held.shape[1] - len(self.held)
         return self._known(-self.pose.held[:, count:])
 
     def displacement(self, place: str = "platform") -> Array:
-        """How far (..., 3) a body's reference, or a named point, has moved from where it is drawn [m]."""
+        """Displacement (..., 3) of a body's reference or of a named point from its nominal position [m]."""
         body, arm = self.place(place)
         moved = self.pose.position[:, body] + (self.pose.turn[:, body] @ (self.model.growth[body] * arm)) - self.model.reference[body] - arm
         return self._known(moved)
 
     def rotation(self, body: str = "platform") -> Array:
-        """The rotation vector (..., 3) of a body, or of that of a named point [rad]."""
+        """Rotation vector (..., 3) of a body, or of the body of a named point [rad]."""
         return self._known(logarithm(self.pose.turn[:, self.place(body)[0]]))
 
     def twist(self, place: str = "platform") -> Array:
-        """Displacement and rotation vector (..., 6) of a place [m, rad]."""
+        """Displacement and rotation vector (..., 6) of a body or point [m, rad]."""
         return np.concatenate([self.displacement(place), self.rotation(place)], axis=-1)
 
     def wrench(self, link: str) -> Array:
-        """What the second body exerts (..., 6) on a flexure's end, in the frame of its start, about its end [N, N m]."""
+        """Wrench (..., 6) of the second body on a flexure's end, in the frame of its start, about its end [N, N m]."""
         for number, group in enumerate(self.model.flexures):
             if link in group.names:
                 place = group.names.index(link)
                 unit = group.law.rigidity[place] / group.law.length[place] ** np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
                 return self._known(unit * self.pose.wrench[number][place])
         names = [name for group in self.model.flexures for name in group.names]
-        raise refuse(link, "it is no flexure of this stage", suggest_nearest(link, names))
+        raise refuse(link, "not a flexure of this stage", suggest_nearest(link, names))
 
     def case(self, number: int) -> State:
-        """One case, by its number in a row."""
+        """Select one case by its number."""
         cases = np.array([number])
         status, iterations, residual, reached = (getattr(self, name).ravel()[number] for name in TOLD)
         loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
         return State(self.model, loads, hold, pose, (), status, iterations, residual, reached, self.held)
 
     def place(self, name: str) -> tuple[int, Array]:
-        """The number of a body, and the drawn arm of its reference or of a named point on it."""
+        """Number of a body, and nominal arm of its reference or of a named point on it."""
         return place(self.model, name)
 
     def _known(self, values: Array) -> Array:
@@ -105,22 +107,22 @@ class State:
 
 
 def why_without(status: int, share: float) -> str:
-    """Why a case has no numbers, the path to its loads being followed to a share of them; empty where it has."""
+    """Describe why a case has no result, with the load fraction of its path; empty if it has one."""
     if status == Status.CONVERGED:
         return ""
     if status == Status.CRITICAL:
         return f"at {share:.4g} of its loads it snaps or buckles: the equilibrium beyond is not the continuation of the unloaded stage"
     if status == Status.NOT_FOLLOWED:
-        return f"equilibrium was followed to {share:.3g} of the way from the unloaded stage: a state beyond is not its continuation"
-    what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not settle"
-    far = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the way to it"
+        return f"equilibrium was followed to {share:.3g} of the path from the unloaded stage: a state beyond is not its continuation"
+    what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
+    far = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the path to it"
     return f"{what} under the whole load; {far}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
-def require_equilibrium(found: State) -> None:
-    """Refuse a case without an equilibrium that continues the unloaded stage: with where the path from there has an event, or ends."""
-    if not bool(found.converged):
-        status, share = int(found.status), float(found.reached)
+def require_equilibrium(solution: State) -> None:
+    """Refuse a case without an equilibrium that continues the unloaded stage, with the load of the critical point or path end."""
+    if not bool(solution.converged):
+        status, share = int(solution.status), float(solution.reached)
         far = f": equilibrium was followed to {share:.3g} of them" if share else ""
         known = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
         what = why_without(status, share) if known else f"under its weight and loads no equilibrium was found{far}"
@@ -128,12 +130,12 @@ def require_equilibrium(found: State) -> None:
 
 
 def place(model: Nonlinear, name: str) -> tuple[int, Array]:
-    """The body's number and the drawn arm of a body's reference or a named point; refused for what is neither."""
+    """Return the body number and the nominal arm of a body's reference or a named point; raises for other names."""
     if name in model.bodies:
         return model.body(name), np.zeros(3)
     known = wrench_places(model.assembly)
     if name not in known:
-        raise refuse(name, "it is neither a body nor a point of this stage", suggest_nearest(name, [*model.bodies, *known]))
+        raise refuse(name, "neither a body nor a point of this stage", suggest_nearest(name, [*model.bodies, *known]))
     body = model.body(known[name].body)
     return body, known[name].point - model.reference[body]
 
@@ -149,27 +151,32 @@ def equilibrium(
     start: State | None = None,
     options: SolverOptions = USUAL,
 ) -> State:
-    """The equilibrium under `loads`: strokes and forces by actuator, wrenches by component (`platform.fy`), numbers or arrays of cases.
+    """Compute the equilibrium under `loads`: strokes and forces by actuator, wrenches by component (`platform.fy`).
 
-    `hold` imposes coordinates of bodies and points (`platform.y`: displacement [m]; `platform.rz`: component of the rotation vector [rad])
-    and finds what holds them. `weight` and `stated` are shares of gravity and of stated forces and preloads. Wrenches are dead: they keep
-    their directions. Every case starts from the drawn position, or from `start`, and takes its whole load at once, or in steps, or by arc
-    length up to where the load turns; one without an equilibrium that is found so is NaN and says so in `status`. So is a stable one found
-    from the drawn position that is not the continuation of the unloaded stage as all its loads and held coordinates grow together, unless
-    `options` go `past` limits or take no `arcs`. Raises `DesignError` for names that the stage does not have.
+    Loads are numbers, or arrays of cases. `hold` fixes coordinates of bodies and points (`platform.y`: displacement [m]; `platform.rz`:
+    component of the rotation vector [rad]) and computes their reactions. `weight` and `stated` are fractions of gravity and of specified
+    forces and preloads. Wrenches keep their directions.
+
+    Every case starts from the nominal position, or from `start`, under its whole load. If that fails, the load grows in steps, then by arc
+    length up to a limit point. A case without a result is NaN, with the reason in `status`.
+
+    From the nominal position, a state is also refused if it is unstable or not the continuation of the unloaded stage, as all loads and
+    fixed coordinates grow together. `options` with `past` limits or without `arcs` permit such states.
+
+    Raises `DesignError` for names that the stage does not have.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = equilibrium(nonlinear(parallelogram()), {"platform.fx": [100.0, 200.0]}, weight=0.0)
-    >>> (found.displacement()[:, 0] * 1e6).round(1).tolist()
+    >>> result = equilibrium(nonlinear(parallelogram()), {"platform.fx": [100.0, 200.0]}, weight=0.0)
+    >>> (result.displacement()[:, 0] * 1e6).round(1).tolist()
     [5.2, 10.3]
     """
-    asked = _asked(model, loads or {}, hold or {}, weight, stated)
-    first = _first(model, start, asked.hold, len(asked.loads.inputs))
-    found = rescue(model, asked.loads, asked.hold, equilibrate(model, first, asked.loads, asked.hold, options), options)
+    request = _asked(model, loads or {}, hold or {}, weight, stated)
+    first = _first(model, start, request.hold, len(request.loads.inputs))
+    solution = rescue(model, request.loads, request.hold, equilibrate(model, first, request.loads, request.hold, options), options)
     if start is None:
-        found = _continued(model, asked, found, options)
-    return state(model, asked.loads, asked.hold, found, (asked.shape, asked.held))
+        solution = _continued(model, request, solution, options)
+    return state(model, request.loads, request.hold, solution, (request.shape, request.held))
 
 
 def equilibria(
@@ -181,10 +188,12 @@ def equilibria(
     stated: Number = 1.0,
     options: SolverOptions = USUAL,
 ) -> list[State]:
-    """The states of several designs of one structure under the same loads, in one run: those that `equilibrium` finds of each.
+    """Compute the states of several designs of one structure under the same loads, each as by `equilibrium`.
 
-    `hold` is that of all designs, or one of each. Links about centres and what is held are worked out of all designs together. Raises
-    `DesignError` where bodies, links or what they join differ.
+    `hold` applies to all designs, or has one entry per design. Links about centres and fixed coordinates are evaluated for all designs
+    together.
+
+    Raises `DesignError` if bodies, links or their connections differ.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -195,42 +204,42 @@ def equilibria(
     """
     _require_alike(models)
     held = [hold or {}] * len(models) if isinstance(hold, Mapping | None) else hold
-    asked = [_asked(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
-    starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, asked, strict=True)]
-    tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, asked, strict=True)]
-    found = equilibrate_designs(tasks, options)
-    rescued = (rescue(each.model, each.loads, each.hold, one, options) for each, one in zip(tasks, found, strict=True))
+    requests = [_asked(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
+    starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, requests, strict=True)]
+    tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, requests, strict=True)]
+    solutions = equilibrate_designs(tasks, options)
+    rescued = (rescue(each.model, each.loads, each.hold, one, options) for each, one in zip(tasks, solutions, strict=True))
     return [
         state(model, each.loads, each.hold, _continued(model, each, one, options), (each.shape, each.held))
-        for model, each, one in zip(models, asked, rescued, strict=True)
+        for model, each, one in zip(models, requests, rescued, strict=True)
     ]
 
 
-def _continued(model: Nonlinear, asked: _Asked, found: Found, options: SolverOptions) -> Found:
-    """What was found, where it is the continuation of the unloaded stage; else that, or why there is none."""
-    known = np.flatnonzero(found.status == Status.CONVERGED)
+def _continued(model: Nonlinear, request: _Asked, solution: Found, options: SolverOptions) -> Found:
+    """The result if it continues the unloaded stage; else the continuation, or the reason why there is none."""
+    known = np.flatnonzero(solution.status == Status.CONVERGED)
     if not options.arcs or options.past or not known.size:
-        return found
+        return solution
     one, none = known[:1], np.zeros(1)
-    loads, hold = asked.loads.of(one).times(none), replace(asked.hold.of(one), value=0.0 * asked.hold.value[one])
+    loads, hold = request.loads.of(one).times(none), replace(request.hold.of(one), value=0.0 * request.hold.value[one])
     drawn = equilibrate(model, _first(model, None, hold, 1), loads, hold)
     if drawn.status[0] != Status.CONVERGED:
-        return found
+        return solution
     for case in known[:, None]:
-        end = Task(model, found.pose.of(case), asked.loads.of(case), asked.hold.of(case))
+        end = Task(model, solution.pose.of(case), request.loads.of(case), request.hold.of(case))
         on = continued(Task(model, drawn.pose, loads, hold), end)
-        found = merge(found, case, replace(on, iterations=found.iterations[case], residual=found.residual[case]))
-    return found
+        solution = merge(solution, case, replace(on, iterations=solution.iterations[case], residual=solution.residual[case]))
+    return solution
 
 
 def _require_alike(models: Sequence[Nonlinear]) -> None:
-    """Refuse designs whose structures differ: the first such, by what differs."""
+    """Refuse designs of different structure, naming the first difference."""
     first = models[0]
     for number, other in enumerate(models[1:], start=2):
         for what, of in _STRUCTURE.items():
             if of(first) != of(other):
-                said = f"its {what} differ from those of the first: {_first_difference(of(first), of(other))}"
-                raise refuse(f"design {number}", said, "Find the equilibria of designs of another structure by themselves")
+                difference = f"its {what} differ from the first design: {_first_difference(of(first), of(other))}"
+                raise refuse(f"design {number}", difference, "Analyse designs of another structure separately")
 
 
 _STRUCTURE: Mapping[str, Callable[[Nonlinear], list[object]]] = {
@@ -258,21 +267,21 @@ def corrected(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> State:
-    """A state taken to a model that is a little different by two steps of Newton's method: right to first order in the difference.
+    """Correct a state for a slightly different model by two Newton steps: right to first order in the difference.
 
-    One would do if the stiffness were the residual's slope to more than the 1e-6 of its rule. Loads and holds are those of `start`. What
-    `start` has no state of, it has none of either.
+    One step would suffice if the stiffness were the derivative of the residual to more than the 1e-6 of its rule. Loads and fixed
+    coordinates are those of `start`. Cases without a state in `start` have none in the result.
     """
-    asked = _asked(model, loads or {}, hold or {}, weight, stated)
-    pose = _first(model, start, asked.hold, len(asked.loads.inputs))
-    found = search(model, pose, asked.loads, asked.hold, replace(USUAL, iterations=2))
-    status = np.where(found.status == Status.SINGULAR, found.status, np.broadcast_to(start.status.ravel(), found.status.shape))
-    return state(model, asked.loads, asked.hold, replace(found, status=status), (asked.shape, asked.held))
+    request = _asked(model, loads or {}, hold or {}, weight, stated)
+    pose = _first(model, start, request.hold, len(request.loads.inputs))
+    solution = search(model, pose, request.loads, request.hold, replace(USUAL, iterations=2))
+    status = np.where(solution.status == Status.SINGULAR, solution.status, np.broadcast_to(start.status.ravel(), solution.status.shape))
+    return state(model, request.loads, request.hold, replace(solution, status=status), (request.shape, request.held))
 
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """Loads and held coordinates of b cases, the shape of these, and the names of those."""
+    """Loads and fixed coordinates of b cases, their shape, and the names of the coordinates."""
 
     loads: Loads
     hold: Hold
@@ -281,7 +290,7 @@ class _Asked:
 
 
 def _asked(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, Number], weight: Number, stated: Number) -> _Asked:
-    """What is asked for, by name; refused where the stage does not have it."""
+    """Loads and fixed coordinates by name; raises for names that the stage does not have."""
     require([*_unknown_inputs(model, loads), *_unknown_coordinates(model, held)])
     arrays = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (*loads.values(), *held.values(), weight, stated)))
     shape, flat = arrays[0].shape, [np.ravel(each) for each in arrays]
@@ -294,11 +303,11 @@ def _asked(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, Num
     return _Asked(whole, _hold(model, held, flat[len(loads) : len(loads) + len(held)], cases), shape, tuple(held))
 
 
-def state(model: Nonlinear, loads: Loads, hold: Hold, found: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:
-    """The state of what was found, its cases in a shape, its held coordinates named."""
+def state(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:
+    """Build the state of a solution, with its cases in a shape and its fixed coordinates by name."""
     shape, held = labels
-    status, iterations, residual, reached = (getattr(found, name).reshape(shape) for name in TOLD)
-    return State(model, loads, hold, found.pose, shape, status, iterations, residual, reached, held)
+    status, iterations, residual, reached = (getattr(solution, name).reshape(shape) for name in TOLD)
+    return State(model, loads, hold, solution.pose, shape, status, iterations, residual, reached, held)
 
 
 def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pose:
@@ -313,9 +322,9 @@ def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pos
 
 def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cases: int) -> Hold:
     places = [name.rpartition(".") for name in held]
-    found = [place(model, owner) for owner, _, _ in places]
-    body = np.array([number for number, _ in found], dtype=int)
-    arm = np.array([arm for _, arm in found]).reshape(-1, 3)
+    coordinates = [place(model, owner) for owner, _, _ in places]
+    body = np.array([number for number, _ in coordinates], dtype=int)
+    arm = np.array([arm for _, arm in coordinates]).reshape(-1, 3)
     component = np.array([COMPONENTS.index(name) for _, _, name in places], dtype=int)
     return Hold(
         body,
@@ -326,11 +335,11 @@ def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cas
     )
 
 
-def _unknown_inputs(model: Nonlinear, given: Mapping[str, Number]) -> Iterator[Finding]:
+def _unknown_inputs(model: Nonlinear, loads: Mapping[str, Number]) -> Iterator[Finding]:
     names = [channel.name for channel in model.inputs]
-    for name in given:
+    for name in loads:
         if name not in names:
-            yield Finding(name, "it is no load of this stage", suggest_nearest(name, names))
+            yield Finding(name, "not a load of this stage", suggest_nearest(name, names))
 
 
 def _unknown_coordinates(model: Nonlinear, held: Mapping[str, Number]) -> Iterator[Finding]:
@@ -339,4 +348,4 @@ def _unknown_coordinates(model: Nonlinear, held: Mapping[str, Number]) -> Iterat
         owner, _, component = name.rpartition(".")
         if owner not in places or component not in COMPONENTS:
             advice = suggest_nearest(name, [f"{each}.{component}" for each in places for component in COMPONENTS])
-            yield Finding(name, "it is no coordinate of this stage", advice)
+            yield Finding(name, "not a coordinate of this stage", advice)

@@ -1,4 +1,4 @@
-"""Results at large displacements for batches of designs, and how they change with the numbers of a description (docs/nonlinear.md, 31)."""
+"""Batches of designs at large displacements, and gradients of results by the numbers of a description (docs/nonlinear.md, 31)."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from flexstage.models.nonlinear.equilibrium import State, corrected, equilibria,
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 
 _SHARE = 1e-3
-"""Step over the number, or over the flexures' length where it is zero."""
+"""Relative step of the number, or step over the flexure length if the number is zero."""
 _STENCIL: Mapping[float, float] = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
-"""Weights of four points about one, of fourth order."""
+"""Weights of a central difference with four points, of fourth order."""
 
 _AT_ONCE = 32
-"""Designs whose models are kept at once."""
+"""Designs whose models are in memory at once."""
 
 Results = Callable[[State], Any]
-"""Numbers or arrays that are read from a state: `State.twist`, frequencies, a critical factor of its model."""
+"""Function of a state: `State.twist`, frequencies, a buckling load factor of its model."""
 
 
 @check_arguments
@@ -40,10 +40,10 @@ def evaluate_designs(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Evaluate results (d, ...) of a batch of d designs, a description whose numbers are arrays; of a single design (...).
+    """Evaluate results (d, ...) for a batch of d designs, a description with arrays as numbers; for a single design (...).
 
-    Loads and holds are those of `equilibrium`, their cases on the axes after that of designs. Where no equilibrium is found results are
-    NaN, as `results` has them. Leaves of one proportion share their tables.
+    Loads and fixed coordinates are as in `equilibrium`, with cases on the axes after the axis of designs. Results are NaN without an
+    equilibrium, as from `results`. Leaves of equal proportions share their tables.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -52,12 +52,12 @@ def evaluate_designs(
     (2, 6)
     """
     count = designs(mechanism)
-    found: list[Array] = []
+    result: list[Array] = []
     for first in range(0, count or 1, _AT_ONCE):
         places = range(first, min(first + _AT_ONCE, count or 1))
         models = [nonlinear(mechanism if count is None else design(mechanism, place)) for place in places]
-        found += [np.asarray(results(each)) for each in equilibria(models, loads, hold=hold, weight=weight, stated=stated)]
-    return found[0] if count is None else np.stack(found)
+        result += [np.asarray(results(each)) for each in equilibria(models, loads, hold=hold, weight=weight, stated=stated)]
+    return result[0] if count is None else np.stack(result)
 
 
 @check_arguments
@@ -71,31 +71,33 @@ def gradients(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Gradients (a, ...) of results by the numbers at a addresses, per SI unit, loads and holds staying as they are.
+    """Compute gradients (a, ...) of results by the numbers at a addresses, per SI unit, for constant loads and fixed coordinates.
 
-    By the implicit function theorem: dq/dp = - K^-1 dF/dp, K the stage's stiffness with all that flexures do inside, dF/dp what their
-    residual at the known state becomes by the number, in four points weighed to fourth order; results are taken there, once each. Right to
-    about 1e-8 of the result over the number. Gradients are NaN where there is no equilibrium. Raises `DesignError` for what is not a single
-    number.
+    By the implicit function theorem: dq/dp = - K^-1 dF/dp, K the tangent stiffness including the inner unknowns of flexures, dF/dp the
+    derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with four
+    points.
+
+    The error is about 1e-8 of the result over the number. Gradients are NaN without an equilibrium. Raises `DesignError` for addresses that
+    are not a single number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()
-    >>> found = gradients(stage, ["materials.steel.young"], lambda state: state.displacement()[0], {"platform.fx": 100.0}, weight=0.0)
-    >>> bool(found[0] < 0.0)
+    >>> result = gradients(stage, ["materials.steel.young"], lambda state: state.displacement()[0], {"platform.fx": 100.0}, weight=0.0)
+    >>> bool(result[0] < 0.0)
     True
     """
     begin = equilibrium(nonlinear(mechanism), loads, hold=hold, weight=weight, stated=stated)
 
-    def beside(model: Nonlinear) -> Array:
+    def evaluate_near(model: Nonlinear) -> Array:
         return np.asarray(results(corrected(model, begin, loads, hold=hold, weight=weight, stated=stated)))
 
-    return np.stack([_slope(mechanism, name, begin.model.size, beside) for name in names])
+    return np.stack([_slope(mechanism, name, begin.model.size, evaluate_near) for name in names])
 
 
-def _slope(mechanism: Mechanism, name: str, size: float, beside: Callable[[Nonlinear], Array]) -> Array:
+def _slope(mechanism: Mechanism, name: str, size: float, evaluate_near: Callable[[Nonlinear], Array]) -> Array:
     value = get(mechanism, name)
     if value is None or not isinstance(locate(mechanism, name).node, NumberNode):
-        raise refuse(name, "gradients are taken by single numbers that the description states", "State it, or name another number")
+        raise refuse(name, "not a single number of the description", "Specify the number, or use another one")
     step = _SHARE * (abs(float(value)) or size)
     moved = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
-    return np.sum([weight * beside(model) for model, weight in zip(moved, _STENCIL.values(), strict=True)], axis=0) / step
+    return np.sum([weight * evaluate_near(model) for model, weight in zip(moved, _STENCIL.values(), strict=True)], axis=0) / step

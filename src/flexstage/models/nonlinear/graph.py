@@ -1,4 +1,4 @@
-"""The stage's residual and stiffness at a pose: links condensed to their bodies, six unknowns a body (docs/nonlinear.md, 17 to 20)."""
+"""Residual and stiffness of the stage at a pose: links condensed to their bodies, six unknowns per body (docs/nonlinear.md, 17 to 20)."""
 
 from __future__ import annotations
 
@@ -23,11 +23,14 @@ from flexstage.spatial.rotation import cross, exponential, logarithm
 
 @dataclass(frozen=True, eq=False)
 class Bent:
-    """A group of flexures at a pose: frames and arms (l, b, ...) in space, how they lie, and the answer to their own system.
+    """A group of flexures at a pose: frames and arms (l, b, ...) in space, configurations, and responses of their own systems.
 
-    `lever` is h, from the first body's reference to the end; `arm` a_j, from the second's; `onset` a_i; `weight` (l, b, 3) the weight over
-    E I / L^3 in the start frames, absent without gravity. `gap` (l, b, 6) is how far the end lies off its body,
-    `wrench` (l, b, 6) what the body there exerts on it once its own system is solved.
+    `lever` is h, from the first body's reference to the end; `arm` a_j, from the second body's; `onset` a_i.
+
+    `weight` (l, b, 3) is the weight over E I / L^3 in the start frames, absent without gravity. `gap` (l, b, 6) is the distance of the end
+    from its body.
+
+    `wrench` (l, b, 6) is the wrench of that body on the end after its own system is solved.
     """
 
     frame: Array
@@ -44,7 +47,7 @@ class Bent:
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What is not made of flexures: `residual` (b, n) and `stiffness` (b, n, n) of links about centres and of held coordinates."""
+    """Terms of all elements but flexures: `residual` (b, n) and `stiffness` (b, n, n) of links about centres and fixed coordinates."""
 
     residual: Array
     stiffness: Array
@@ -52,7 +55,7 @@ class Rest:
 
 @dataclass(frozen=True, eq=False)
 class Tally:
-    """A residual (b, n) and a stiffness that are being added up, the ground's rows among them."""
+    """A residual (b, n) and a stiffness in assembly, including the ground rows."""
 
     residual: Array
     stiffness: Sum
@@ -60,7 +63,7 @@ class Tally:
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Residual (b, n) and stiffness of bodies' freedoms and of reactions, an array or a sparse matrix a case; groups as they are bent."""
+    """Residual (b, n) and stiffness of body freedoms and reactions, one array or sparse matrix per case; groups of flexures at the pose."""
 
     residual: Array
     matrix: Array | tuple[Any, ...]
@@ -68,21 +71,21 @@ class System:
 
     @property
     def stiffness(self) -> Array:
-        """With its zeros (b, n, n)."""
+        """Dense stiffness (b, n, n)."""
         return self.matrix if isinstance(self.matrix, np.ndarray) else np.stack([each.toarray() for each in self.matrix])
 
     def solved(self, right: Array) -> Array:
-        """What right sides (b, n) move (b, n); NaN where a case is singular."""
+        """Solve for right sides (b, n): (b, n); NaN if a case is singular."""
         return solved(self.matrix, right)
 
 
 def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
-    """Residual and stiffness of the stage, the forces of flexures already brought up to date."""
+    """Assemble residual and stiffness of the stage, for flexures with updated forces."""
     residual, kept = _nothing(model, pose, hold)
     tally = Tally(residual, empty_sum(*residual.shape))
     bent = tuple(bend(group, pose, number, loads) for number, group in enumerate(model.flexures))
-    for group, found in zip(model.flexures, bent, strict=True):
-        force, own = _flexure_terms(group.law, found)
+    for group, terms in zip(model.flexures, bent, strict=True):
+        force, own = _flexure_terms(group.law, terms)
         _scatter(tally, group, force, own)
     _add_loads(model, pose, loads, tally)
     _add_rest(model, pose, loads, hold, tally)
@@ -90,7 +93,7 @@ def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
 
 
 def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
-    """What links about centres, superelements and held coordinates add; `None` where there are none."""
+    """Assemble the terms of links about centres, superelements and fixed coordinates; `None` if there are none."""
     if not model.hinges.names and not model.elements and not len(hold.body):
         return None
     residual, kept = _nothing(model, pose, hold)
@@ -100,7 +103,7 @@ def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
 
 
 def _nothing(model: Nonlinear, pose: Pose, hold: Hold) -> tuple[Array, Array]:
-    """A residual of zeros, the ground's rows among them, and which rows are kept in the end."""
+    """A zero residual, including the ground rows, and the rows to keep at the end."""
     cases, size, count = len(pose.position), model.freedoms + 6, len(model.hinges.locked) + len(hold.body)
     kept = np.r_[: model.freedoms, size : size + count]
     return np.zeros((cases, size + count)), kept
@@ -113,7 +116,7 @@ def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, tally: Tal
 
 
 def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:
-    """A group of flexures between its bodies."""
+    """Evaluate a group of flexures between its bodies."""
     law = group.law
     turn, other = _gather(pose.turn, group.first), _gather(pose.turn, group.second)
     frame = turn @ group.turn[:, None]
@@ -132,7 +135,7 @@ def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:
 
 
 def end_motion(law: FlexureLaw, bent: Bent) -> Array:
-    """T (l, b, 6, 12): the motion of the end in the start frame, over the length, by those of both bodies (docs/nonlinear.md, 17)."""
+    """Compute T (l, b, 6, 12): relative end motion in the start frame by the motions of both bodies (docs/nonlinear.md, 17)."""
     back = _transpose(bent.frame)
     none, eye = np.zeros_like(back), np.broadcast_to(np.eye(3), back.shape)
     place = back @ np.concatenate([-eye, cross_matrix(bent.lever), eye, -cross_matrix(bent.arm)], axis=-1)
@@ -141,7 +144,7 @@ def end_motion(law: FlexureLaw, bent: Bent) -> Array:
 
 
 def weight_motion(bent: Bent) -> Array:
-    """How the weight in the start frame changes (l, b, 3, 12) as the first body turns."""
+    """Compute the change of the weight in the start frame (l, b, 3, 12) by the rotation of the first body."""
     assert bent.weight is not None  # noqa: S101  (asked for only where there is weight)
     back = _transpose(bent.frame)
     result = np.zeros((*back.shape[:-1], 12))
@@ -150,7 +153,7 @@ def weight_motion(bent: Bent) -> Array:
 
 
 def geometric(law: FlexureLaw, bent: Bent, force: Array, moment: Array) -> Array:
-    """The part (l, b, 12, 12) of the stiffness that comes from arms turning under the forces on the end (docs/nonlinear.md, 18)."""
+    """Compute the stiffness (l, b, 12, 12) due to rotation of the arms under the end forces (docs/nonlinear.md, 18)."""
     scale = (law.rigidity / law.length)[:, None, None]
     force_hat = cross_matrix(_rotate(bent.frame, force) * scale / law.length[:, None, None])
     moment_hat = cross_matrix(_rotate(bent.frame, moment) * scale)
@@ -195,15 +198,17 @@ def _flexure_terms(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
 
 
 def _add_weight(law: FlexureLaw, bent: Bent, motion: Array, residual: Array, stiffness: Array) -> tuple[Array, Array]:
-    """What the flexures' own weight adds (docs/nonlinear.md, 16)."""
-    count, moved, found = law.form.shape[-1], bent.answer.moved, bent.tangent
-    assert found.hung is not None  # noqa: S101
-    assert found.swayed is not None  # noqa: S101
+    """Add the weight of the flexures (docs/nonlinear.md, 16)."""
+    count, moved, element = law.form.shape[-1], bent.answer.moved, bent.tangent
+    assert element.hung is not None  # noqa: S101
+    assert element.swayed is not None  # noqa: S101
     sway = weight_motion(bent)
     unit = (law.rigidity / law.length)[:, None, None, None]
     down = moved[..., :6] @ motion + moved[..., 6:] @ sway
     mean = (
-        found.hung @ down[..., :count, :] + found.swayed[..., 0, :, :] @ down[..., count : count + 3, :] + found.swayed[..., 1, :, :] @ sway
+        element.hung @ down[..., :count, :]
+        + element.swayed[..., 0, :, :] @ down[..., count : count + 3, :]
+        + element.swayed[..., 1, :, :] @ sway
     )
     stiffness = stiffness + unit * (_transpose(motion) @ (moved[..., count:, 6:] @ sway) - _transpose(sway) @ mean)
     weight, hanging = _weight_of(law, bent)
@@ -234,7 +239,7 @@ def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> Non
 
 
 def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
-    """Superelements, their weight included (docs/nonlinear.md, 31)."""
+    """Add superelements, including their weight (docs/nonlinear.md, 31)."""
     for element in model.elements:
         force, own = stiffen_ports(element, pose.position[:, element.bodies], pose.turn[:, element.bodies], loads.gravity)
         for row, body in enumerate(element.bodies):
@@ -245,13 +250,13 @@ def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> N
 
 
 def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
-    """The poses of the bodies of links about centres."""
+    """Return the poses of the bodies of links about centres."""
     first, second = model.hinges.first, model.hinges.second
     return Ends(*(_gather(each, which) for which in (first, second) for each in (pose.position, pose.turn)))
 
 
 def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
-    """Dead forces at points of bodies, and dead couples (docs/nonlinear.md, 19)."""
+    """Add constant-direction forces at points of bodies, and constant couples (docs/nonlinear.md, 19)."""
     dead = model.dead(loads)
     arms = _rotate(pose.turn[:, model.places.body], model.places.arm)
     moment = cross(arms, dead[..., :3]) + dead[..., 3:]
@@ -263,17 +268,17 @@ def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None
 
 
 def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
-    """What loads exert (b, n) on bodies and locked freedoms at a pose, to which they are proportional."""
+    """Compute the generalised forces (b, n) of loads on bodies and locked freedoms at a pose, linear in the loads."""
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
-    found = []
+    result = []
     for inputs in (0.0 * rate.inputs, rate.inputs):
         tally = Tally(np.zeros((cases, size)), empty_sum(cases, size))
         loads = Loads(inputs, np.zeros((cases, 3)), np.zeros(cases))
         _add_hinges(model, pose, loads, tally)
         _add_loads(model, pose, loads, tally)
-        found.append(tally.residual)
+        result.append(tally.residual)
     kept = np.r_[: model.freedoms, model.freedoms + 6 : size]
-    return (found[0] - found[1])[:, kept]
+    return (result[0] - result[1])[:, kept]
 
 
 def _add_holds(hold: Hold, pose: Pose, tally: Tally, start: int) -> None:
@@ -290,7 +295,7 @@ def _add_holds(hold: Hold, pose: Pose, tally: Tally, start: int) -> None:
 
 
 def _scatter(tally: Tally, links: Flexures | Hinges, force: Array, own: Array) -> None:
-    """Add what links (l, b, 12) and (l, b, 12, 12) do to their two bodies."""
+    """Add link terms (l, b, 12) and (l, b, 12, 12) to their two bodies."""
     freedoms, ends = np.arange(6), ((links.first, slice(0, 6)), (links.second, slice(6, 12)))
     for bodies, rows in ends:
         places = (6 * bodies[:, None] + freedoms).ravel()
@@ -300,7 +305,7 @@ def _scatter(tally: Tally, links: Flexures | Hinges, force: Array, own: Array) -
 
 
 def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, share: Array) -> tuple[Pose, Array]:
-    """The pose after a share (b,) of the step (b, n), the unknowns inside flexures following at once; and their largest step (b,)."""
+    """Advance the pose by a fraction (b,) of the step (b, n), with inner unknowns of flexures; return also the largest inner step (b,)."""
     cases = len(pose.position)
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((cases, 6))], axis=1).reshape(cases, -1, 6)
     strain, wrench, largest = [], [], np.zeros(cases)
@@ -317,17 +322,17 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, s
 
 
 def apart(model: Nonlinear, bent: tuple[Bent, ...], step: Array) -> Array:
-    """The largest motion (b,) of one end of a flexure against the other in a step (b, n), over its length and in radians."""
+    """Return the largest relative motion (b,) of flexure ends in a step (b, n), over the length and in radians."""
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((len(step), 6))], axis=1).reshape(len(step), -1, 6)
-    found = [np.zeros(len(step))]
+    largest = [np.zeros(len(step))]
     for group, each in zip(model.flexures, bent, strict=True):
         both = np.concatenate([np.moveaxis(moved[:, bodies], 1, 0) for bodies in (group.first, group.second)], axis=-1)[..., None]
-        found.append(np.max(np.abs(end_motion(group.law, each) @ both), axis=(0, 2, 3)))
-    return np.max(np.stack(found), axis=0)
+        largest.append(np.max(np.abs(end_motion(group.law, each) @ both), axis=(0, 2, 3)))
+    return np.max(np.stack(largest), axis=0)
 
 
 def follow(group: Flexures, bent: Bent, moved: Array) -> Array:
-    """The step (l, b, q + 6) inside flexures as bodies move by (b, n + 1, 6)."""
+    """Compute the step (l, b, q + 6) of the inner unknowns of flexures for body motions (b, n + 1, 6)."""
     both = np.concatenate([np.moveaxis(moved[:, each], 1, 0) for each in (group.first, group.second)], axis=-1)[..., None]
     step = bent.answer.moved[..., :6] @ (end_motion(group.law, bent) @ both)
     if bent.weight is not None:
@@ -336,7 +341,7 @@ def follow(group: Flexures, bent: Bent, moved: Array) -> Array:
 
 
 def flexure_weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
-    """The flexures' weight per length over E I / L^3 in their start frames; `None` without gravity."""
+    """Return the weight per length of flexures over E I / L^3 in their start frames; `None` without gravity."""
     if not np.any(loads.gravity):
         return None
     density = law.line_mass * law.length**3 / law.rigidity
@@ -344,7 +349,7 @@ def flexure_weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
 
 
 def _gather(array: Array, bodies: Array) -> Array:
-    """(b, n, ...) of bodies (l,) as (l, b, ...)."""
+    """Gather (b, n, ...) of bodies (l,) to (l, b, ...)."""
     return np.moveaxis(array[:, bodies], 1, 0)
 
 

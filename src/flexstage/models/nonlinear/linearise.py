@@ -1,4 +1,4 @@
-"""Small motions about a state as a `LinearModel`: coordinates are the bodies and the flexures' amplitudes (docs/nonlinear.md, 25)."""
+"""Linearisation about a state to a `LinearModel`: coordinates are the bodies and the flexure amplitudes (docs/nonlinear.md, 25)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, cross_matrix, spa
 
 _SHAKEN = " (link)"
 _MATRICES, MEMORY = 6.0, 8e9
-"""Matrices of all coordinates that are there at once, and the bytes that they may take."""
+"""Number of full matrices in memory at once, and their maximum size in bytes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,12 +48,12 @@ class _Linear:
     geometric: Array
     mass: Array
     rows: Array | None = None
-    """What `elastic` is over (b, r, 12 + m); absent, the coordinates themselves."""
+    """Operator of `elastic` (b, r, 12 + m); absent: identity."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Coordinates:
-    """Bodies' freedoms, then every flexure's own: how many each has, in order."""
+    """Offsets of the coordinates: body freedoms, then the own amplitudes of every flexure, in order."""
 
     model: Nonlinear
     own: Mapping[str, int]
@@ -68,18 +68,18 @@ class _Coordinates:
         return (*bodies, *(f"{link}.mode{number + 1}" for link, count in self.own.items() for number in range(count)))
 
     def body(self, number: int) -> Array:
-        """Selector (6, n) of a body's freedoms, zero of the ground."""
+        """Selector (6, n) of the freedoms of a body, zero for the ground."""
         result = np.zeros((6, self.size))
         if 0 <= number < len(self.model.bodies):
             result[:, 6 * number : 6 * number + 6] = np.eye(6)
         return result
 
     def ports(self, name: str, bodies: Array) -> Array:
-        """Selector (6 p + m, n) of the bodies at a superelement's ports and its own modes."""
+        """Selector (6 p + m, n) of the port bodies of a superelement and its own modes."""
         return np.concatenate([*(self.body(int(each)) for each in bodies), self.link(name, (-1, -1))[12:]])
 
     def link(self, name: str, joins: tuple[int, int]) -> Array:
-        """Selector (12 + m, n) of a link's two bodies and its own amplitudes."""
+        """Selector (12 + m, n) of the two bodies of a link and its own amplitudes."""
         before = list(self.own)[: list(self.own).index(name)] if name in self.own else list(self.own)
         start = self.model.freedoms + sum(self.own[each] for each in before)
         inside = np.eye(self.own.get(name, 0), self.size, k=start)
@@ -88,15 +88,17 @@ class _Coordinates:
 
 @check_arguments
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
-    """Small motions about a state, all cases of it as a batch: modes, responses and losses of a displaced or loaded stage.
+    """Linearise about a state, with all cases as a batch: modes, responses and losses of a displaced or loaded stage.
 
-    What was held is released: stiffness is that of the free stage under the force that held it, which keeps its direction (of a rotation:
-    the moment conjugate to that component of the rotation vector). Coordinates `locked`, of those that were held, stay held. Plate fields
-    follow without mass. Stiffness is symmetrised, and split by link, with one more contribution, `geometric`. Forces inside flexures are
-    not told (`unknown`). Gauges look along their drawn lines. Without `inner` coordinates flexures follow their bodies as they do at rest,
-    and each is its 6x6 about its middle, in the frame of its start: the same statics, link by link, as lost motion and drift ask for; modes
-    are then those of Guyan's reduction. Raises `DesignError` where no case has a state, for `locked` names that
-    were not held, and where matrices would take more than 8 GB.
+    - Fixed coordinates are released: stiffness is that of the free stage under the reaction, which keeps its direction (for a rotation: the
+      moment conjugate to that component of the rotation vector). Coordinates in `locked`, a subset of the fixed ones, stay fixed.
+    - Plate fields follow without mass.
+    - Stiffness is symmetrised, and split by link, with one more contribution, `geometric`.
+    - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
+    - Without `inner` coordinates flexures follow their bodies statically, each as a 6x6 about its middle, in the frame of its start.
+      Statics is equal link by link, as lost motion and drift require; modes are those of Guyan reduction.
+
+    Raises `DesignError` if no case has a state, for `locked` names that are not fixed, and if matrices take more than 8 GB.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -106,10 +108,10 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     ('platform.x', True)
     """
     if not np.any(state.converged):
-        raise refuse("stage", "no case has an equilibrium to move about", "Look at the status of the state, or ask for less load")
+        raise refuse("stage", "no case has an equilibrium", "Check the status of the state, or reduce the load")
     for name in locked:
         if name not in state.held:
-            raise refuse(name, "it was not held at this state", suggest_nearest(name, state.held))
+            raise refuse(name, "not fixed at this state", suggest_nearest(name, state.held))
     model = state.model
     _require_memory(state, inner=inner)
     whole = assemble(model, state.pose, state.loads, state.hold)
@@ -124,14 +126,14 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
 
 
 def _require_memory(state: State, *, inner: bool) -> None:
-    """Refuse what would take more memory than most computers have: its matrices are dense."""
+    """Refuse models whose dense matrices exceed the memory of common computers."""
     model, cases = state.model, len(state.pose.position)
     own = sum(len(group.names) * (group.law.form.shape[-1] - 3) for group in model.flexures) if inner else 0
     size = model.freedoms + own + sum(len(each.squares) for each in model.elements)
     needed, most = (f"{each / 1e9:.0f} GB" for each in (8.0 * _MATRICES * cases * size**2, MEMORY))
     if 8.0 * _MATRICES * cases * size**2 > MEMORY:
         what = f"small motions about {cases} states have {size:,} coordinates: dense matrices of {needed}, above {most}"
-        raise refuse("stage", what, "Ask for fewer states at once (state.case), or without coordinates of flexures (inner=False)")
+        raise refuse("stage", what, "Use fewer states at once (state.case), or no coordinates of flexures (inner=False)")
 
 
 def _joins(model: Nonlinear) -> dict[str, tuple[int, int]]:
@@ -159,18 +161,18 @@ def _assembled(
         stiffness[name] = Contribution(rows[place] @ select, model.hinges.stiffness[place], _loss(model, name))
         _add(bending, select, remains[place])
     for element in model.elements:
-        stiffness[element.name], rest = _strained(state, order, element)
-        bending += rest
+        stiffness[element.name], remainder = _strained(state, order, element)
+        bending += remainder
     bending[:, : model.freedoms, : model.freedoms] += _turning(model, state)
     stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + np.swapaxes(bending, -1, -2)))
-    inertia, seen = _inertia(state, order, joins, links)
+    inertia, carriers = _inertia(state, order, joins, links)
     force, output, feedthrough = _channels(state, order, rows, joins)
     basis, kept = _free(_locked(state, order, rows, locked), order)
     known = 1.0 if state.converged.all() else np.where(state.converged.ravel(), 1.0, np.nan)[:, None, None]
     imposed = {name: model.hinges.stroke[place] for place, name in enumerate(model.hinges.names) if np.any(model.hinges.stroke[place])}
     rigid = np.zeros((len(state.pose.position), order.size, 6))
     rigid[:, : model.freedoms] = _rigid(state)
-    carried = strain_forces(inertia, seen) if inertia else np.zeros_like(rigid)
+    carried = strain_forces(inertia, carriers) if inertia else np.zeros_like(rigid)
     names = order.names
     return _shaped(
         state,
@@ -197,13 +199,13 @@ def _assembled(
 
 
 def _add(matrix: Array, select: Array, own: Array) -> None:
-    """Add what a link (b, k, k) does to the freedoms (b, n, n) that its selector (k, n) names; its bodies differ, the ground has none."""
+    """Add link terms (b, k, k) to the freedoms (b, n, n) of its selector (k, n), for two different bodies; the ground has no rows."""
     rows, columns = np.nonzero(select)
     matrix[:, columns[:, None], columns] += own[:, rows[:, None], rows]
 
 
 def _shaped(state: State, model: LinearModel) -> LinearModel:
-    """The model with its cases in the shape of the state's."""
+    """Reshape the cases of the model to the shape of the state."""
     cases = len(state.pose.position)
 
     def reshape(value: object) -> object:
@@ -220,26 +222,26 @@ def _shaped(state: State, model: LinearModel) -> LinearModel:
 
 def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
     """Every flexure of a group, by name."""
-    law, found, inside = group.law, bent.tangent, _inside(group, bent)
+    law, element, inside = group.law, bent.tangent, _inside(group, bent)
     amplitudes, swayed = inside.amplitudes, inside.swayed
     unit = (law.rigidity / law.length)[:, None, None, None]
     elastic = _transpose(amplitudes) @ (law.form[:, None] @ amplitudes) + _transpose(inside.gap) @ inside.hung
-    rest = _transpose(amplitudes) @ ((found.hessian - law.form[:, None]) @ amplitudes)
-    if found.hung is not None and found.swayed is not None:
-        mixed = _transpose(swayed) @ (found.hung @ amplitudes)
-        rest = rest - mixed - _transpose(mixed) - _transpose(swayed) @ (found.swayed[..., 1, :, :] @ swayed)
+    remainder = _transpose(amplitudes) @ ((element.hessian - law.form[:, None]) @ amplitudes)
+    if element.hung is not None and element.swayed is not None:
+        mixed = _transpose(swayed) @ (element.hung @ amplitudes)
+        remainder = remainder - mixed - _transpose(mixed) - _transpose(swayed) @ (element.swayed[..., 1, :, :] @ swayed)
     turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])
-    rest = unit * rest
-    rest[..., :12, :12] += turned
+    remainder = unit * remainder
+    remainder[..., :12, :12] += turned
     masses = _mass(group, bent, inside)
     return {
-        name: _Linear(unit[place] * elastic[place], 0.5 * (rest[place] + _transpose(rest[place])), masses[place])
+        name: _Linear(unit[place] * elastic[place], 0.5 * (remainder[place] + _transpose(remainder[place])), masses[place])
         for place, name in enumerate(group.names)
     }
 
 
 def _follow_statically(item: _Linear, bent: Bent, law: FlexureLaw, place: int) -> _Linear:
-    """A flexure of a group without coordinates of its own: its 6x6 about its middle, all else `geometric`."""
+    """A flexure of a group without own coordinates: its 6x6 about its middle, and a `geometric` remainder."""
     whole = item.elastic + item.geometric
     follow = -np.linalg.solve(whole[..., 12:, 12:], whole[..., 12:, :12])
     basis = np.concatenate([np.broadcast_to(np.eye(12), (*follow.shape[:-2], 12, 12)), follow], axis=-2)
@@ -255,7 +257,7 @@ def _follow_statically(item: _Linear, bent: Bent, law: FlexureLaw, place: int) -
 
 @dataclass(frozen=True, eq=False)
 class _Inside:
-    """What follows the coordinates of a flexure, its bodies' and its own: amplitudes (l, b, q, 12 + m), gap, force, weight."""
+    """Dependent quantities of a flexure by its body and own coordinates: amplitudes (l, b, q, 12 + m), gap, force, weight."""
 
     amplitudes: Array
     gap: Array
@@ -264,21 +266,21 @@ class _Inside:
 
 
 def _inside(group: Flexures, bent: Bent) -> _Inside:
-    law, found = group.law, bent.tangent
+    law, element = group.law, bent.tangent
     motion = end_motion(law, bent)
     sway = weight_motion(bent) if bent.weight is not None else np.zeros((*motion.shape[:-2], 3, 12))
-    follow, own = _constrain(law.form[:, None], found.turning, motion[..., 3:, :])
+    follow, own = _constrain(law.form[:, None], element.turning, motion[..., 3:, :])
     amplitudes = np.concatenate([follow, own], axis=-1)
     padding = np.zeros((*motion.shape[:-2], 6, own.shape[-1]))
     ends, swayed = np.concatenate([motion, padding], -1), np.concatenate([sway, padding[..., :3, :]], -1)
-    gap = found.reach @ amplitudes - ends[..., :3, :]
-    if found.swayed is not None:
-        gap = gap + found.swayed[..., 0, :, :] @ swayed
-    return _Inside(amplitudes, gap, np.linalg.solve(found.soft, gap), swayed)
+    gap = element.reach @ amplitudes - ends[..., :3, :]
+    if element.swayed is not None:
+        gap = gap + element.swayed[..., 0, :, :] @ swayed
+    return _Inside(amplitudes, gap, np.linalg.solve(element.soft, gap), swayed)
 
 
 def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array]:
-    """Amplitudes that turn the end with its body (..., q, 12), and those (..., q, q - 3) that do not turn it, scaled by their stiffness."""
+    """Amplitudes that rotate the end with its body (..., q, 12), and amplitudes (..., q, q - 3) without rotation, scaled by stiffness."""
     root = 1.0 / np.sqrt(np.diagonal(form, axis1=-2, axis2=-1))
     scaled = turning * root[..., None, :]
     follow = root[..., None] * (_transpose(scaled) @ np.linalg.solve(scaled @ _transpose(scaled), turned))
@@ -287,7 +289,7 @@ def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array
 
 
 def _mass(group: Flexures, bent: Bent, inside: _Inside) -> Array:
-    """Mass (l, b, 12 + m, 12 + m) of flexures: every point moves with its start, bends and stretches with its amplitudes."""
+    """Mass (l, b, 12 + m, 12 + m) of flexures: every point moves with the start, and by bending and stretch amplitudes."""
     law, lies = group.law, bent.lies
     place, turn = _points(group, bent, inside)
     local = _transpose(lies.turn) @ (_transpose(bent.frame[..., None, :, :]) @ turn)
@@ -298,7 +300,7 @@ def _mass(group: Flexures, bent: Bent, inside: _Inside) -> Array:
 
 
 def _points(group: Flexures, bent: Bent, inside: _Inside) -> tuple[Array, Array]:
-    """How the points of a flexure move and turn (l, b, n, 3, 12 + m) in the stage's axes by its coordinates."""
+    """Displacement and rotation of flexure points (l, b, n, 3, 12 + m) in stage axes by the flexure coordinates."""
     law, lies, amplitudes = group.law, bent.lies, inside.amplitudes
     paths, turned, soft = mode_paths(law, lies)
     frame = bent.frame[..., None, :, :]
@@ -313,15 +315,15 @@ def _points(group: Flexures, bent: Bent, inside: _Inside) -> tuple[Array, Array]
 
 
 def _arms(group: Flexures, bent: Bent) -> Array:
-    """Arms (l, b, n, 3) from the first bodies' references to the points of flexures."""
+    """Arms (l, b, n, 3) from the first body references to the points of flexures."""
     reach = group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
     return bent.onset[..., None, :] + reach
 
 
 def modal_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> tuple[Array, dict[str, Array]]:
-    """What shapes (n, k) of the coordinates of `linearise(state, locked=locked)` do in its first case.
+    """Compute body and flexure motions of shapes (n, k) of `linearise(state, locked=locked)`, in the first case.
 
-    Twists of bodies about their references (k, bodies, 6), and of flexures' centre lines by name (k, points + 2, 6), ends included.
+    Twists of bodies about their references (k, bodies, 6), and of flexure centre lines by name (k, points + 2, 6), including ends.
     """
     model = state.model
     whole = assemble(model, state.pose, state.loads, state.hold)
@@ -348,7 +350,7 @@ def _with_ends(bent: Bent, number: int, points: Array, moved: Array) -> tuple[Ar
 
 
 def flexure_motions(group: Flexures, bent: Bent, moved: Array, inner: Array) -> dict[str, Array]:
-    """Twists (points + 2, 6) of centre lines in the first case, by bodies' (n + 1, 6) and amplitudes and forces (l, q + 6) within."""
+    """Compute twists (points + 2, 6) of centre lines in the first case, by body twists (n + 1, 6) and inner unknowns (l, q + 6)."""
     law = group.law
     paths, turned, soft = (each[:, 0] for each in mode_paths(law, bent.lies))
     frame, arms = bent.frame[:, 0, None], _arms(group, bent)[:, 0]
@@ -356,13 +358,13 @@ def flexure_motions(group: Flexures, bent: Bent, moved: Array, inner: Array) -> 
     bent_by, force = inner[:, None, :size, None], inner[:, None, count : count + 3, None]
     place = law.length[:, None, None] * (frame @ (paths @ bent_by + soft[:, 0] @ force))[..., 0]
     turn = (frame @ (turned @ bent_by))[..., 0]
-    found: dict[str, Array] = {}
+    element: dict[str, Array] = {}
     for number, name in enumerate(group.names):
         both = np.concatenate([moved[group.first[number]], moved[group.second[number]]])[:, None]
         carried = transport(arms[number]) @ both[:6]
         points = carried + np.concatenate([place[number], turn[number]], axis=-1)[..., None]
-        found[name] = np.concatenate(_with_ends(bent, number, points, both))[..., 0]
-    return found
+        element[name] = np.concatenate(_with_ends(bent, number, points, both))[..., 0]
+    return element
 
 
 def _pad(matrix: Array, count: int) -> Array:
@@ -370,7 +372,7 @@ def _pad(matrix: Array, count: int) -> Array:
 
 
 def _hinges(state: State) -> tuple[Array, Array]:
-    """Deformations of links about centres by their bodies' motions (l, b, 6, 12), and what is not elastic in their stiffness."""
+    """Deformations of links about centres by the motions of their bodies (l, b, 6, 12), and the non-elastic part of their stiffness."""
     model = state.model
     hinges, cases = model.hinges, len(state.pose.position)
     if not hinges.names:
@@ -383,7 +385,7 @@ def _hinges(state: State) -> tuple[Array, Array]:
 
 
 def _turning(model: Nonlinear, state: State) -> Array:
-    """What dead forces, and those that hold coordinates, add to the stiffness of bodies (b, n, n) as their arms turn."""
+    """Stiffness of bodies (b, n, n) due to rotation of the arms of constant-direction forces and of reactions."""
     cases = len(state.pose.position)
     result = np.zeros((cases, model.freedoms + 6, model.freedoms + 6))
     dead = model.dead(state.loads)
@@ -400,7 +402,7 @@ def _turning(model: Nonlinear, state: State) -> Array:
 
 
 def _rigid(state: State) -> Array:
-    """Motion (b, n, 6) of bodies that move with the ground, its twist given at the platform's reference."""
+    """Motion (b, n, 6) of bodies with the ground, whose twist is at the platform's reference."""
     position = state.pose.position
     centre = position[:, state.model.body(PLATFORM)]
     carries = [transport(position[:, number] - centre) for number in range(len(state.model.bodies))]
@@ -410,21 +412,21 @@ def _rigid(state: State) -> Array:
 def _inertia(
     state: State, order: _Coordinates, joins: Mapping[str, tuple[int, int]], links: Mapping[str, _Linear]
 ) -> tuple[dict[str, Contribution], dict[str, Array]]:
-    """Masses of bodies and links, and the motion of each with the ground."""
+    """Masses of bodies and links, and their motions with the ground."""
     model, pose = state.model, state.pose
     centre = pose.position[:, model.body(PLATFORM)]
     inertia: dict[str, Contribution] = {}
-    seen: dict[str, Array] = {}
+    carriers: dict[str, Array] = {}
     for name, matrix in model.inertia.items():
         number = model.body(name)
         turn = spatial_rotation(pose.turn[:, number])
         inertia[name] = Contribution(order.body(number), turn @ matrix @ _transpose(turn))
-        seen[name] = transport(pose.position[:, number] - centre)
+        carriers[name] = transport(pose.position[:, number] - centre)
     for name, item in links.items():
         carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
         still = np.zeros((len(centre), item.mass.shape[-1] - 12, 6))
         inertia[name + _SHAKEN] = Contribution(order.link(name, joins[name]), item.mass)
-        seen[name + _SHAKEN] = np.concatenate([*carries, still], axis=-2)
+        carriers[name + _SHAKEN] = np.concatenate([*carries, still], axis=-2)
     for place, name in enumerate(model.hinges.names):
         matrix = mass(model.assembly.links[name].part, model.assembly.links[name].material)
         ends = _hinge_twists(state, place)
@@ -432,19 +434,19 @@ def _inertia(
         both[:, :6, :6], both[:, 6:, 6:] = ends
         carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
         inertia[name + _SHAKEN] = Contribution(both @ order.link(name, joins[name]), matrix)
-        seen[name + _SHAKEN] = both @ np.concatenate(carries, axis=-2)
+        carriers[name + _SHAKEN] = both @ np.concatenate(carries, axis=-2)
     for element in model.elements:
         twists = _port_twists(state, element)
         select = order.ports(element.name, element.bodies)
         inertia[element.name + _SHAKEN] = Contribution(twists @ select, element.inertia)
         carries = np.concatenate([transport(pose.position[:, body] - centre) for body in element.bodies], axis=-2)
         still = np.zeros((len(centre), len(element.squares), 6))
-        seen[element.name + _SHAKEN] = twists @ np.concatenate([carries, still], axis=-2)
-    return inertia, seen
+        carriers[element.name + _SHAKEN] = twists @ np.concatenate([carries, still], axis=-2)
+    return inertia, carriers
 
 
 def _strained(state: State, order: _Coordinates, element: Corotated) -> tuple[Contribution, Array]:
-    """A superelement's own stiffness over what strains it and its modes, and all else that it adds (b, n, n)."""
+    """Own stiffness of a superelement over its strains and modes, and all its other terms (b, n, n)."""
     position, turn = state.pose.position[:, element.bodies], state.pose.turn[:, element.bodies]
     rows = element.relative @ moved(element, position, turn).rows
     _, whole = stiffen_ports(element, position, turn, state.loads.gravity)
@@ -453,12 +455,12 @@ def _strained(state: State, order: _Coordinates, element: Corotated) -> tuple[Co
     law, operator = np.zeros((strained + modes,) * 2), np.zeros((len(rows), strained + modes, ports + modes))
     law[:strained, :strained], law[strained:, strained:] = element.stiffness, np.diag(element.squares)
     operator[:, :strained, :ports], operator[:, strained:, ports:] = rows, np.eye(modes)
-    rest = select[:ports].T @ (whole - _transpose(rows) @ element.stiffness @ rows) @ select[:ports]
-    return Contribution(operator @ select, law, element.loss), rest
+    remainder = select[:ports].T @ (whole - _transpose(rows) @ element.stiffness @ rows) @ select[:ports]
+    return Contribution(operator @ select, law, element.loss), remainder
 
 
 def _port_twists(state: State, element: Corotated) -> Array:
-    """The twists of a superelement's ports in their axes, and its modes (b, 6 p + m, 6 p + m), by motions of bodies and modes."""
+    """Port twists of a superelement in port axes, and modes (b, 6 p + m, 6 p + m), by motions of bodies and modes."""
     turn = state.pose.turn[:, element.bodies]
     count, modes = len(element.bodies), len(element.squares)
     result = np.zeros((len(turn), 6 * count + modes, 6 * count + modes))
@@ -471,14 +473,14 @@ def _port_twists(state: State, element: Corotated) -> Array:
 
 
 def _hinge_twists(state: State, place: int) -> tuple[Array, Array]:
-    """The twists (b, 6, 6) of a link's ends at its centre, in the frames of each body, by the bodies' own."""
+    """Twists (b, 6, 6) of the ends of a link at its centre, in the frames of each body, by the body twists."""
     hinges, pose = state.model.hinges, state.pose
-    found = []
+    twists = []
     for bodies, arms in ((hinges.first, hinges.arm_first), (hinges.second, hinges.arm_second)):
         turn = pose.turn[:, bodies[place]]
         arm = turn @ arms[place]
-        found.append(_transpose(spatial_rotation(turn @ hinges.turn[place])) @ transport(arm))
-    return found[0], found[1]
+        twists.append(_transpose(spatial_rotation(turn @ hinges.turn[place])) @ transport(arm))
+    return twists[0], twists[1]
 
 
 def _channels(state: State, order: _Coordinates, rows: Array, joins: Mapping[str, tuple[int, int]]) -> tuple[Array, Array, Array]:
@@ -494,24 +496,24 @@ def _channels(state: State, order: _Coordinates, rows: Array, joins: Mapping[str
         force[:, :, start + 6 * place : start + 6 * place + 6] += _transpose(twist)
     for place, name in enumerate(model.hinges.names):
         force += _transpose(rows[place] @ order.link(name, joins[name])) @ model.hinges.thrust[place]
-    told = [*_moved_twists(state, order, twist_places(assembly)), *gauge_rows(assembly, motions)]
-    passed = [np.zeros((row.shape[-2], inputs)) for row in told]
+    output_rows = [*_moved_twists(state, order, twist_places(assembly)), *gauge_rows(assembly, motions)]
+    passed = [np.zeros((row.shape[-2], inputs)) for row in output_rows]
     for name in wrench_owners(assembly):
         place = model.hinges.names.index(name) if name in model.hinges.names else None
         law = np.zeros((6, 6)) if place is None else model.hinges.stiffness[place]
-        told.append(np.zeros((6, order.size)) if place is None else law @ rows[place] @ order.link(name, joins[name]))
+        output_rows.append(np.zeros((6, order.size)) if place is None else law @ rows[place] @ order.link(name, joins[name]))
         passed.append(np.zeros((6, inputs)) if place is None else -law @ model.hinges.stroke[place] - model.hinges.thrust[place])
-    output = np.concatenate([np.broadcast_to(row, (cases, *row.shape[-2:])) for row in told], axis=-2)
+    output = np.concatenate([np.broadcast_to(row, (cases, *row.shape[-2:])) for row in output_rows], axis=-2)
     return force, output, np.concatenate(passed)
 
 
 def _moved_twists(state: State, order: _Coordinates, places: Mapping[str, object]) -> list[Array]:
-    """The twist (b, 6, n) of every place where it now is, in the stage's axes."""
-    found = []
+    """Twist (b, 6, n) of every point in its current position, in stage axes."""
+    twists = []
     for name in places:
         number, arm = state.place(name)
-        found.append(transport(state.pose.turn[:, number] @ (state.model.growth[number] * arm)) @ order.body(number))
-    return found
+        twists.append(transport(state.pose.turn[:, number] @ (state.model.growth[number] * arm)) @ order.body(number))
+    return twists
 
 
 def _at(state: State, order: _Coordinates) -> Callable[[str, Frame], Array]:
@@ -527,22 +529,22 @@ def _at(state: State, order: _Coordinates) -> Callable[[str, Frame], Array]:
 def _locked_rows(model: Nonlinear, rows: Array, order: _Coordinates, joins: Mapping[str, tuple[int, int]]) -> Array:
     """Locked freedoms of links by all coordinates (b, c, n)."""
     names = model.hinges.names
-    found = [rows[link, :, freedom, None] @ order.link(names[link], joins[names[link]]) for link, freedom in model.hinges.locked]
-    return np.concatenate(found, axis=-2) if found else np.zeros((rows.shape[1], 0, order.size))
+    locked_rows = [rows[link, :, freedom, None] @ order.link(names[link], joins[names[link]]) for link, freedom in model.hinges.locked]
+    return np.concatenate(locked_rows, axis=-2) if locked_rows else np.zeros((rows.shape[1], 0, order.size))
 
 
 def _held_rows(state: State, order: _Coordinates, locked: list[int]) -> list[Array]:
-    """Held coordinates that stay held, by all coordinates (b, 1, n) each."""
+    """Coordinates that stay fixed, by all coordinates (b, 1, n) each."""
     return [gradients(state.hold, place, state.pose)[1][:, None] @ order.body(int(state.hold.body[place])) for place in locked]
 
 
 def _locked(state: State, order: _Coordinates, rows: Array, locked: list[int]) -> Array:
-    """What may not move (b, c, n): locked freedoms of links, and held coordinates, by number, that stay so."""
+    """Constraint rows (b, c, n): locked freedoms of links, and coordinates, by number, that stay fixed."""
     return np.concatenate([_locked_rows(state.model, rows, order, _joins(state.model)), *_held_rows(state, order, locked)], axis=-2)
 
 
 def _free(locked: Array, order: _Coordinates) -> tuple[Array, tuple[int, ...]]:
-    """What the locked freedoms (b, c, n) leave: motions (..., n, k) and the coordinates they are named after."""
+    """Null space of the locked freedoms (b, c, n): motions (..., n, k) and the names of their coordinates."""
     if not locked.shape[-2]:
         return np.eye(order.size), tuple(range(order.size))
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in order.names])
@@ -558,15 +560,15 @@ def _loss(model: Nonlinear, name: str) -> float:
 
 
 def _untold(model: Nonlinear) -> Iterator[str]:
-    """Flexures, and ports of superelements: what passes there is not told."""
+    """Flexures, and ports of superelements, whose forces the model does not determine."""
     yield from (name for group in model.flexures for name in group.names)
     yield from (f"{each.name}.{port}" for each in model.elements for port in each.ports)
 
 
 def _viscous(model: Nonlinear) -> dict[str, Array]:
-    found = {name: viscous_damping(model.assembly.links[name].part) for name in model.hinges.names}
-    found |= {each.name: each.damping for each in model.elements}
-    return {name: damping for name, damping in found.items() if damping is not None}
+    dampers = {name: viscous_damping(model.assembly.links[name].part) for name in model.hinges.names}
+    dampers |= {each.name: each.damping for each in model.elements}
+    return {name: damping for name, damping in dampers.items() if damping is not None}
 
 
 def _transpose(matrix: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Where the centre lines of flexures lie at a state, and how they move in its modes and as it gives way."""
+"""Centre lines of flexures at a state, and their motion in modes and at buckling."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from flexstage.models.nonlinear.paths.critical_load import Critical
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A flexure's centre line at `shares` (s,) of its length, from 0 to 1, in b cases.
+    """Centre line of a flexure at `shares` (s,) of its length, from 0 to 1, in b cases.
 
-    `place` (b, s, 3) [m] in the stage's frame, `turn` (b, s, 3, 3) is how its sections have turned since they were drawn.
+    `place` (b, s, 3) [m] is in the stage frame, `turn` (b, s, 3, 3) is the rotation of its sections from the nominal configuration.
     """
 
     shares: Array
@@ -36,13 +36,13 @@ class Motions:
 
 
 def centre_lines(state: State) -> dict[str, Line]:
-    """The centre lines of all flexures by name, cases in a row: at the points of their rule, and at both ends, which lie on their bodies.
+    """Compute the centre lines of all flexures by name, on one axis of cases: at the points of their rule and at both ends.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = centre_lines(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}))
-    >>> found["left"].place.shape
+    >>> result = centre_lines(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}))
+    >>> result["left"].place.shape
     (1, 12, 3)
     """
     return dict(_lines(state))
@@ -68,29 +68,29 @@ def _lines(state: State) -> Iterator[tuple[str, Line]]:
 
 
 def mode_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> Motions:
-    """What shapes (n, k) of the coordinates of `linearise(state, locked=locked)` do, in the first case; real parts."""
+    """Compute motions of shapes (n, k) of `linearise(state, locked=locked)`, in the first case; real parts."""
     bodies, lines = modal_motions(state, np.real(shapes), locked)
     return Motions(bodies, lines)
 
 
-def critical_motion(found: Critical) -> Motions:
-    """How a stage gives way, about its last stable state: bodies, and flexures as they follow; or one flexure by itself."""
-    state = found.state
+def critical_motion(critical: Critical) -> Motions:
+    """Compute the buckling mode about the last stable state: of bodies, with flexures that follow; or of one flexure between fixed ends."""
+    state = critical.state
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     moved = np.zeros((1, len(state.model.bodies) + 1, 6))
-    own = found.link != ""
-    moved[0, :-1] = 0.0 if own else found.shape
+    own = critical.link != ""
+    moved[0, :-1] = 0.0 if own else critical.shape
     lines: dict[str, Array] = {}
     for group, bent in zip(state.model.flexures, whole.bent, strict=True):
         inner = (follow(group, bent, moved) - bent.answer.still)[:, 0]
-        if found.link in group.names:
-            place = group.names.index(found.link)
+        if critical.link in group.names:
+            place = group.names.index(critical.link)
             inner[place] = _softest(bent, place)
         lines |= flexure_motions(group, bent, moved[0], inner)
     return Motions(moved[:, :-1], {name: each[None] for name, each in lines.items()})
 
 
 def _softest(bent: Bent, place: int) -> Array:
-    """Amplitudes, force and moment of the own system of one flexure that are nearest to no resistance."""
+    """Amplitudes, force and moment of the own system of one flexure that are nearest to zero resistance."""
     matrix = system(bent.tangent)[place, 0]
     return np.linalg.svd(matrix)[2][-1]

@@ -1,4 +1,4 @@
-"""Newton's method on everything at once: bodies, flexures' amplitudes and forces, reactions (docs/nonlinear.md, 21)."""
+"""Newton's method on all unknowns: bodies, flexure amplitudes and forces, reactions (docs/nonlinear.md, 21)."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status,
 from flexstage.models.nonlinear.walk import walked
 
 _CHUNK, _STREAM, _DESIGNS = 128, 2048, 32
-"""Cases at once, which the processor's caches keep; of a stage whose iterations are all in C, where lanes refill; and designs."""
+"""Cases at once, to fit the processor cache; cases of a stage that is iterated in C only, where lanes refill; and designs."""
 
 
 USUAL = SolverOptions()
 TOLD = ("status", "iterations", "residual", "reached")
-"""What is told of every case."""
+"""Fields of the result of every case."""
 _GOES_ON = -1
 _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust", "push", "strut", "bow")
-"""Tables of links about centres that differ from design to design."""
+"""Fields of links about centres that differ from design to design."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Poses of b cases, each with its status, its iterations, the last residual of its flexures, and the share of its load `reached`.
+    """Poses of b cases with status, iterations, last residual of flexures, and load fraction `reached`.
 
-    A case that failed has the pose of that share, if there is one above zero, or the one it began from.
+    A failed case has the pose of that fraction if it is above zero, else its start pose.
     """
 
     pose: Pose
@@ -41,27 +41,27 @@ class Found:
     reached: Array
 
     def of(self, cases: Array) -> Found:
-        """Some of the cases."""
+        """Select cases."""
         return Found(self.pose.of(cases), *(getattr(self, name)[cases] for name in TOLD))
 
 
 def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options: SolverOptions = USUAL) -> Found:
-    """The equilibrium of every case, the whole load at once; what fails so is loaded in steps."""
+    """Solve the equilibrium of every case under its whole load; failed cases are loaded in steps."""
     cases = np.arange(len(loads.inputs))
     most = _STREAM if _all_compiled(model, hold) else _CHUNK
     chunks = [search(model, start.of(part), loads.of(part), hold.of(part), options) for part in _split(cases, most)]
-    found = join(chunks)
-    return _by_steps(model, start, loads, hold, options=options, found=found)
+    solution = join(chunks)
+    return _by_steps(model, start, loads, hold, options=options, solution=solution)
 
 
 def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[Found]:
-    """The same of several designs of one structure, as many at once as their cases are one chunk."""
+    """Solve several designs of one structure, as many at once as one chunk of cases permits."""
     several = min(_DESIGNS, max(1, _CHUNK // len(tasks[0].loads.inputs)))
     if several == 1:
         return [equilibrate(*_parts(each), options) for each in tasks]
     chunks = [tasks[first : first + several] for first in range(0, len(tasks), several)]
-    found = [each for chunk in chunks for each in search_designs(chunk, options)]
-    return [_by_steps(*_parts(task), options=options, found=each) for task, each in zip(tasks, found, strict=True)]
+    solutions = [each for chunk in chunks for each in search_designs(chunk, options)]
+    return [_by_steps(*_parts(task), options=options, solution=each) for task, each in zip(tasks, solutions, strict=True)]
 
 
 def _split(cases: Array, most: int) -> list[Array]:
@@ -69,13 +69,13 @@ def _split(cases: Array, most: int) -> list[Array]:
 
 
 def _all_compiled(model: Nonlinear, hold: Hold) -> bool:
-    """Whether the kernel knows all of the stage: flexures and dead loads, nothing else and nothing held."""
+    """Whether the kernel supports the whole stage: only flexures and constant-direction loads, no fixed coordinates."""
     others = model.hinges.names or model.elements or len(hold.body)
     return not others and kernel() is not None and tables(model) is not None
 
 
 def join(parts: list[Found]) -> Found:
-    """What was found in several batches as one."""
+    """Join the results of several batches."""
     if len(parts) == 1:
         return parts[0]
     poses = [part.pose for part in parts]
@@ -93,9 +93,9 @@ def join(parts: list[Found]) -> Found:
     return Found(pose, *(np.concatenate([getattr(part, name) for part in parts]) for name in TOLD))
 
 
-def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, options: SolverOptions, found: Found) -> Found:
-    """What failed, loaded in steps: twice as long after each that is found, half as long after each that is not."""
-    failed = np.flatnonzero(found.status != Status.CONVERGED)
+def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, options: SolverOptions, solution: Found) -> Found:
+    """Load failed cases in steps: twice the step after success, half after failure."""
+    failed = np.flatnonzero(solution.status != Status.CONVERGED)
     share, width, pose = np.zeros(len(failed)), np.full(len(failed), 0.5), start.of(failed)
     loads, hold = loads.of(failed), hold.of(failed)
     while (active := np.flatnonzero((share < 1.0) & (width >= 0.5**options.halvings))).size:
@@ -107,26 +107,26 @@ def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, option
         share[active[good]] = aim[good]
         pose = pose.put(active[good], again.pose.of(np.flatnonzero(good)))
         whole = np.flatnonzero(aim == 1.0)
-        found = merge(found, failed[active[whole]], again.of(whole))
-    reached = replace(found, reached=put(found.reached, failed, share))
+        solution = merge(solution, failed[active[whole]], again.of(whole))
+    reached = replace(solution, reached=put(solution.reached, failed, share))
     lost = reached.status[failed] != Status.CONVERGED
     return replace(reached, pose=reached.pose.put(failed[lost], pose.of(np.flatnonzero(lost))))
 
 
-def merge(found: Found, cases: Array, other: Found) -> Found:
-    """What was found, with some cases exchanged."""
-    return Found(found.pose.put(cases, other.pose), *(put(getattr(found, name), cases, getattr(other, name)) for name in TOLD))
+def merge(solution: Found, cases: Array, other: Found) -> Found:
+    """Replace some cases of a result."""
+    return Found(solution.pose.put(cases, other.pose), *(put(getattr(solution, name), cases, getattr(other, name)) for name in TOLD))
 
 
 def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, options: SolverOptions) -> Found:
-    """Iterate all cases together; those that are done leave. In C where there is a kernel that knows all of the stage's flexures."""
-    (found,) = search_designs((Task(model, start, loads, hold),), options)
-    return found
+    """Iterate all cases together; finished cases leave. In C if a kernel supports all flexures of the stage."""
+    (solutions,) = search_designs((Task(model, start, loads, hold),), options)
+    return solutions
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """The cases of one design: where they start, their loads, what is held."""
+    """Cases of one design: start poses, loads, fixed coordinates."""
 
     model: Nonlinear
     start: Pose
@@ -134,13 +134,13 @@ class Task:
     hold: Hold
 
     def of(self, cases: Array, pose: Pose) -> Task:
-        """Some of the cases, from a pose of all."""
+        """Select cases, from poses of all."""
         return Task(self.model, pose.of(cases), self.loads.of(cases), self.hold.of(cases))
 
 
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """A search under way, its arrays written as it goes on: what is told of every case (b,), and which still go on."""
+    """State of an iteration, updated in place: results of every case (b,), and the active cases."""
 
     task: Task
     status: Array
@@ -157,7 +157,7 @@ class _Search:
         return np.flatnonzero(self.status == _GOES_ON)
 
     def take(self, cases: Array, step: _Step, options: SolverOptions) -> None:
-        """What a step tells of the cases that made it."""
+        """Update the results of the cases of a step."""
         self.iterations[cases] += 1
         self.residual[cases] = step.gap
         lost = ~np.isfinite(step.size)
@@ -171,7 +171,7 @@ class _Search:
 
 @dataclass(frozen=True, eq=False)
 class _Step:
-    """The pose after an iteration, the step's `size` (b,), and how large the flexures' residuals were before it, `gap` (b,)."""
+    """Pose after an iteration, `size` (b,) of its step, and `gap` (b,), the flexure residuals before it."""
 
     pose: Pose
     size: Array
@@ -179,7 +179,7 @@ class _Step:
 
 
 def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[Found]:
-    """The same of several designs of one structure, each with its cases: what is not made of flexures is worked out together."""
+    """Iterate several designs of one structure, each with its cases; elements other than flexures are evaluated together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
         return [_search_compiled(task, options) for task in tasks]
@@ -191,8 +191,8 @@ def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[Found]
             if not going:
                 break
             cases = [searches[place].active for place in going]
-            here = [tasks[place].of(some, poses[place]) for place, some in zip(going, cases, strict=True)]
-            steps = _iterate_compiled(here, options) if compiled else [_Step(*iterate(*_parts(each), options)) for each in here]
+            selected = [tasks[place].of(some, poses[place]) for place, some in zip(going, cases, strict=True)]
+            steps = _iterate_compiled(selected, options) if compiled else [_Step(*iterate(*_parts(each), options)) for each in selected]
             for place, some, step in zip(going, cases, steps, strict=True):
                 poses[place] = poses[place].put(some, step.pose)
                 searches[place].take(some, step, options)
@@ -204,19 +204,19 @@ def _parts(task: Task) -> tuple[Nonlinear, Pose, Loads, Hold]:
 
 
 def _search_compiled(task: Task, options: SolverOptions) -> Found:
-    found = iterate_compiled(task.model, task.start, task.loads, options, None)
-    return Found(found.pose, found.status, found.count, found.lack, 1.0 * (found.status == Status.CONVERGED))
+    solutions = iterate_compiled(task.model, task.start, task.loads, options, None)
+    return Found(solutions.pose, solutions.status, solutions.count, solutions.lack, 1.0 * (solutions.status == Status.CONVERGED))
 
 
 def _iterate_compiled(tasks: list[Task], options: SolverOptions) -> list[_Step]:
-    """As `iterate`, flexures, loads and the solution in C."""
+    """Iterate as `iterate`, with flexures, loads and solution in C."""
     once = replace(options, iterations=1)
-    found = [iterate_compiled(each.model, each.start, each.loads, once, rest) for each, rest in zip(tasks, _rests(tasks), strict=True)]
-    return [_Step(each.pose, each.moved, each.lack) for each in found]
+    results = [iterate_compiled(each.model, each.start, each.loads, once, terms) for each, terms in zip(tasks, _rests(tasks), strict=True)]
+    return [_Step(each.pose, each.moved, each.lack) for each in results]
 
 
 def _rests(tasks: list[Task]) -> list[Rest | None]:
-    """What is not made of flexures, of all designs together; with superelements one after another."""
+    """Terms of elements other than flexures, of all designs together; one by one with superelements."""
     if len(tasks) == 1 or tasks[0].model.elements:
         return [rest(*_parts(each)) for each in tasks]
     counts = [len(each.loads.inputs) for each in tasks]
@@ -229,7 +229,7 @@ def _rests(tasks: list[Task]) -> list[Rest | None]:
 
 
 def _together(tasks: list[Task], design: Array) -> Task:
-    """One task of all cases, in which links about centres and places of held coordinates go with the design (b,) of each case."""
+    """One task of all cases, with links about centres and points of fixed coordinates by the design (b,) of each case."""
 
     def all_cases(of: Callable[[Task], Array]) -> Array:
         return np.concatenate([of(each) for each in tasks])
@@ -250,7 +250,7 @@ def _together(tasks: list[Task], design: Array) -> Task:
 
 
 def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, options: SolverOptions) -> tuple[Pose, Array, Array]:
-    """One step: the pose after it, the step's size (b,) and how large the flexures' residuals were before it (b,)."""
+    """Compute one step: the new pose, the size of the step and the flexure residuals before it (b,)."""
     system = assemble(model, pose, loads, hold)
     step = system.solved(-system.residual)
     size = motion(model, step, model.size)
@@ -262,17 +262,17 @@ def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, options: Sol
 
 
 def motion(model: Nonlinear, step: Array, length: float) -> Array:
-    """The largest motion (b,) in a step (b, n): translations over a length, radians."""
+    """Return the largest motion (b,) in a step (b, n): translations over a length, and radians."""
     moved = step[:, : model.freedoms].reshape(len(step), -1, 6)
     over = np.array([length] * 3 + [1.0] * 3)
     return np.max(np.abs(moved) / over, axis=(1, 2))
 
 
 def lack(model: Nonlinear, system: System) -> Array:
-    """The largest residual (b,) inside flexures: gaps, and forces on amplitudes over their stiffness; locked freedoms' too."""
-    found = [np.zeros(len(system.residual))]
+    """Return the largest flexure residual (b,): gaps, and forces on amplitudes over their stiffness; also of locked freedoms."""
+    largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
         stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]
-        found += [np.max(np.abs(bent.gap), axis=(0, 2)), np.max(np.max(np.abs(bent.tangent.gradient), axis=-1) / stiff, axis=0)]
+        largest += [np.max(np.abs(bent.gap), axis=(0, 2)), np.max(np.max(np.abs(bent.tangent.gradient), axis=-1) / stiff, axis=0)]
     held = system.residual[:, model.freedoms :]
-    return np.max(np.stack([*found, np.max(np.abs(held), axis=1, initial=0.0)]), axis=0)
+    return np.max(np.stack([*largest, np.max(np.abs(held), axis=1, initial=0.0)]), axis=0)

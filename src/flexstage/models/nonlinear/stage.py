@@ -1,4 +1,4 @@
-"""A stage read for large displacements: bodies, flexures in groups of one kind, links about centres, and where loads act."""
+"""Nonlinear model of a stage: bodies, flexures in groups of one kind, links about centres, and load points."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from flexstage.spatial.frame import spatial_rotation, transport
 
 @dataclass(frozen=True, eq=False)
 class Flexures:
-    """Flexures whose tables have one shape: bodies by number, start frame `turn` (l, 3, 3) as drawn, arms (l, 3) to start and end."""
+    """Flexures with tables of one shape: bodies by number, nominal start frame `turn` (l, 3, 3), arms (l, 3) to start and end."""
 
     names: tuple[str, ...]
     law: FlexureLaw
@@ -49,7 +49,7 @@ class Flexures:
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Where dead loads act: a body's number and the drawn arm (d, 3) from its reference."""
+    """Points of constant-direction loads: the number of a body and the nominal arm (d, 3) from its reference."""
 
     body: Array
     arm: Array
@@ -57,11 +57,12 @@ class Places:
 
 @dataclass(frozen=True, eq=False)
 class Nonlinear:
-    """A stage for large displacements: see `nonlinear`.
+    """Nonlinear model of a stage; see `nonlinear`.
 
-    `bodies` are named in order, the ground is the last number; `reference` (n + 1, 3) as drawn. Dead loads act at `places`: first those of
-    the wrench inputs, then the stated forces with `stated` (d, 3), then the `masses` (d,). `growth` (n + 1,) is how many times their drawn
-    size bodies have.
+    `bodies` are named in order, the ground is the last number; `reference` (n + 1, 3) is nominal. Loads act at `places`: first the wrench
+    inputs, then the specified forces `stated` (d, 3), then the `masses` (d,).
+
+    `growth` (n + 1,) is the thermal scale factor of bodies.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a nonlinear model", "fs.nonlinear(stage)")
@@ -83,7 +84,7 @@ class Nonlinear:
 
     @cached_property
     def size(self) -> float:
-        """The length that translations are compared with [m]: that of the longest flexure, or the largest arm."""
+        """Length scale of translations [m]: the longest flexure, or the largest arm."""
         lengths = [float(np.max(group.law.length)) for group in self.flexures]
         places = (self.hinges.arm_first, self.hinges.arm_second, *(each.place - each.place[0] for each in self.elements))
         arms = [np.max(np.abs(each), initial=0.0) for each in places]
@@ -91,22 +92,22 @@ class Nonlinear:
 
     @cached_property
     def reach(self) -> float:
-        """The length that steps of translations are limited by [m]: bodies on long arms move far as they turn."""
+        """Length scale of translation steps [m]: bodies on long arms move far under a rotation."""
         groups = (*self.flexures, self.hinges)
         arms = [np.max(np.linalg.norm(each, axis=-1), initial=0.0) for group in groups for each in (group.arm_first, group.arm_second)]
         return float(max(self.size, *arms))
 
     @property
     def freedoms(self) -> int:
-        """Coordinates of the bodies."""
+        """Number of body coordinates."""
         return 6 * len(self.bodies)
 
     def body(self, name: str) -> int:
-        """A body's number."""
+        """Return the number of a body."""
         return len(self.bodies) if name == GROUND else self.bodies.index(name)
 
     def drawn(self, cases: int) -> Pose:
-        """The drawn position of b cases, unloaded."""
+        """Return the nominal, unloaded pose of b cases."""
         count = len(self.bodies) + 1
         sizes = [(len(group.names), cases, group.law.form.shape[-1]) for group in self.flexures]
         return Pose(
@@ -118,18 +119,18 @@ class Nonlinear:
         )
 
     def dead(self, loads: Loads) -> Array:
-        """Dead wrenches (b, d, 6) at the places."""
+        """Return the constant-direction wrenches (b, d, 6) at the points."""
         wrench = np.zeros((len(loads.inputs), len(self.places.body), 6))
-        given = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
-        count = len(given) // 6
-        wrench[:, :count] = loads.inputs[:, given].reshape(-1, count, 6)
+        columns = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
+        count = len(columns) // 6
+        wrench[:, :count] = loads.inputs[:, columns].reshape(-1, count, 6)
         wrench[..., :3] += loads.constant[:, None, None] * self.stated + self.masses[:, None] * loads.gravity[:, None]
         return wrench
 
 
 @dataclass(frozen=True, eq=False)
 class _Growth:
-    """How many times their drawn size `bodies` (n + 1,) have, and links' `parts` that are not as drawn."""
+    """Thermal scale factors of `bodies` (n + 1,), and link `parts` of changed size."""
 
     bodies: Array
     parts: Mapping[str, float]
@@ -140,7 +141,7 @@ class _Growth:
 
 @dataclass(frozen=True, eq=False)
 class _Drawn:
-    """Bodies as drawn: the `number` of each by name, the ground's last, their `reference` (n + 1, 3), and how they have grown."""
+    """Nominal bodies: `number` of each by name, the ground last, `reference` (n + 1, 3), and their thermal growth."""
 
     number: Mapping[str, int]
     reference: Array
@@ -149,12 +150,14 @@ class _Drawn:
 
 @check_arguments
 def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
-    """Read a stage for large displacements: every flexure one spectral element, bodies free in space (docs/nonlinear.md).
+    """Build the nonlinear model of a stage: one spectral element per flexure, bodies with finite motions (docs/nonlinear.md).
 
-    Leaves, rods, notches and necks bend; all other links are their 6x6, and superelements their matrices, in a frame that turns with them.
-    Valid for small strains in the flexures. Batches of designs are refused. `temperature` is a uniform change [K] beside the `temperatures`
-    that the description states: bodies and parts grow freely by their expansion, a part at the mean of its ends, the `ground` (of this
-    material; absent: as `drift` finds it) about the origin; what does not fit bends. Moduli stay. What states no expansion is then refused.
+    Leaves, rods, notches and necks bend; all other links have their 6x6, and superelements their matrices, in a corotated frame. Valid for
+    small strains in the flexures. Batches of designs are refused.
+
+    `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely, a part at
+    the mean temperature of its ends, the `ground` (of this material; absent: as in `drift`) about the origin; incompatible expansion bends
+    the parts. Moduli are constant. A temperature requires the expansion of every material.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]
@@ -170,7 +173,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, drawn)
     centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
     places, stated, masses = _places(mechanism, assembly, number, reference, centred)
-    carried = {name: moving_inertia(mechanism, placed) for name, placed in assembly.bodies.items()}
+    carried = {name: moving_inertia(mechanism, assembly_links) for name, assembly_links in assembly.bodies.items()}
     return Nonlinear(
         assembly=assembly,
         bodies=bodies,
@@ -191,7 +194,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
 
 
 def _laws(assembly: Assembly, resolution: Resolution) -> dict[str, FlexureLaw | None]:
-    """The law of each link, worked out once for links of one part."""
+    """The law of each link, computed once per part."""
     known: dict[tuple[int, int], FlexureLaw | None] = {}
     result = {}
     for name, link in assembly.links.items():
@@ -203,28 +206,28 @@ def _laws(assembly: Assembly, resolution: Resolution) -> dict[str, FlexureLaw | 
 
 
 def _growth(mechanism: Mechanism, assembly: Assembly, bodies: tuple[str, ...], change: float, ground: str | None) -> _Growth:
-    """How bodies and parts have grown at the temperatures of the description and a uniform change, on a ground of some material."""
+    """Thermal growth of bodies and parts at the temperatures of the description and a uniform change, on a ground of some material."""
     if ground is not None:
-        ground_of(mechanism, ground)  # refuses the name of no material, whatever the temperatures are
+        ground_of(mechanism, ground)  # raises for an unknown material at any temperature
     stated = {name: float(np.real(value)) for name, value in mechanism.temperatures.items()}
     warmth = {name: change + stated.get(name, stated.get(EVERYWHERE, 0.0)) for name in (*bodies, GROUND)}
     if not any(warmth.values()):
         return _Growth(np.ones(len(bodies) + 1), {})
-    found = expansion(mechanism, ground)
-    mean = {name: 0.5 * sum(warmth[body] for body in assembly.links[name].joins) for name in found.parts}
-    parts = {name: 1.0 + mean[name] * float(each) for name, (each, _) in found.parts.items()}
-    return _Growth(np.array([1.0 + warmth[name] * float(found.bodies[name]) for name in (*bodies, GROUND)]), parts)
+    growth = expansion(mechanism, ground)
+    mean = {name: 0.5 * sum(warmth[body] for body in assembly.links[name].joins) for name in growth.parts}
+    parts = {name: 1.0 + mean[name] * float(each) for name, (each, _) in growth.parts.items()}
+    return _Growth(np.array([1.0 + warmth[name] * float(growth.bodies[name]) for name in (*bodies, GROUND)]), parts)
 
 
 def _grow(law: FlexureLaw, ratio: float) -> FlexureLaw:
-    """A flexure that has grown alike in all directions: its tables stay, being relative."""
+    """A flexure after uniform thermal growth: its relative tables are unchanged."""
     inertia = law.inertia * np.array([1.0 / ratio, ratio, ratio, ratio])
     return replace(law, length=law.length * ratio, rigidity=law.rigidity * ratio**4, inertia=inertia, half=law.half * ratio)
 
 
 def _one(value: Array, name: str) -> Array:
     if np.asarray(value).ndim != 1:
-        raise refuse(name, "a batch of designs at large displacements is not known", "Read one design at a time")
+        raise refuse(name, "a batch of designs is not supported at large displacements", "Analyse one design at a time")
     return np.asarray(value, dtype=float)
 
 
@@ -282,8 +285,8 @@ def _hinges(mechanism: Mechanism, assembly: Assembly, links: Mapping[str, Placed
 
 
 def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: Array) -> Corotated:
-    """A superelement by its matrices, its ports' motions in the stage's axes."""
-    found = condense(placed.part, f"parts.{placed.link.part}")
+    """A superelement by its matrices, with port motions in stage axes."""
+    condensed = condense(placed.part, f"parts.{placed.link.part}")
     bodies = np.array([number[port.body] for port in placed.ports.values()], dtype=int)
     place = np.stack([_one(port.frame.position, placed.name) for port in placed.ports.values()])
     turns = np.stack([port.frame.rotation for port in placed.ports.values()])
@@ -297,7 +300,7 @@ def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: A
             relative[rows, own] = into[own, own]
             relative[rows, :6] = -into[own, own] @ transport(place[port] - place[0])
     whole = np.tile(np.eye(6)[:, :3], (count, 1))
-    inertia, loss = found.inertia[: 6 * count, : 6 * count], placed.part.loss_factor
+    inertia, loss = condensed.inertia[: 6 * count, : 6 * count], placed.part.loss_factor
     return Corotated(
         name=placed.name,
         ports=tuple(placed.ports),
@@ -306,19 +309,19 @@ def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: A
         axes=turns,
         place=place,
         relative=relative,
-        stiffness=found.stiffness,
-        squares=found.squares,
-        inertia=found.inertia,
-        damping=found.damping,
+        stiffness=condensed.stiffness,
+        squares=condensed.squares,
+        inertia=condensed.inertia,
+        damping=condensed.damping,
         loss=0.0 if loss is None else float(loss),
-        mass=found.mass,
-        centre=placed.frame.point(found.centre),
+        mass=condensed.mass,
+        centre=placed.frame.point(condensed.centre),
         share=into.T @ inertia @ into @ whole,
     )
 
 
 def _halves_more(links: Mapping[str, PlacedLink], growth: _Growth, bodies: Array, side: float) -> Array:
-    """How much more (l, 3) than its body a part's half next to it has grown, seen from that end."""
+    """Thermal growth (l, 3) of the half of a part at a body minus that of the body, at that end."""
     more = [
         side * float(span(link.part)) * (growth.of(name) - growth.bodies[body]) * link.frame.rotation[:, 0] * (name in growth.parts)
         for body, (name, link) in zip(bodies, links.items(), strict=True)
@@ -329,7 +332,7 @@ def _halves_more(links: Mapping[str, PlacedLink], growth: _Growth, bodies: Array
 def _places(
     mechanism: Mechanism, assembly: Assembly, number: Mapping[str, int], reference: Array, centred: Mapping[str, PlacedLink]
 ) -> tuple[Places, Array, Array]:
-    """Places of wrench inputs, of stated forces and of masses: bodies', payloads' and halves of links about centres."""
+    """Points of wrench inputs, of specified forces and of masses: bodies, payloads and halves of links about centres."""
     inputs = [(number[place.body], place.point, np.zeros(3), 0.0) for place in wrench_places(assembly).values()]
     forces = [(number[item.body], stack(item.at), stack(item.force), 0.0) for item in mechanism.forces.values()]
     masses = [
@@ -345,17 +348,17 @@ def _places(
 
 
 def _halves(link: PlacedLink, number: Mapping[str, int]) -> list[tuple[int, Array, Array, float]]:
-    """What of a link's mass each of its bodies carries, and where."""
+    """Mass of a link on each of its bodies, and its position."""
     matrix = mass(link.part, link.material)
-    found = []
+    halves = []
     for end, body in enumerate(link.joins):
         share = matrix[6 * end : 6 * end + 6, :6] + matrix[6 * end : 6 * end + 6, 6:12]
         if share[0, 0] > 0.0:
             along = share[5, 1] / share[1, 1]
-            found.append((number[body], link.frame.position + along * link.frame.rotation[:, 0], np.zeros(3), float(share[0, 0])))
-    return found
+            halves.append((number[body], link.frame.position + along * link.frame.rotation[:, 0], np.zeros(3), float(share[0, 0])))
+    return halves
 
 
 def extent(model: Nonlinear) -> dict[str, float]:
-    """Lengths of all links [m], by name."""
+    """Return the lengths of all links [m], by name."""
     return {name: float(span(link.part)) for name, link in model.assembly.links.items()}

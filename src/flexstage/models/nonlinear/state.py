@@ -12,13 +12,13 @@ from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 
 WEIGHT = "weight"
-"""The load that is the stage's own weight, payloads included."""
+"""Name of the load that is the weight of the stage, including payloads."""
 STATED = "stated forces"
-"""The load that is all stated forces and preloads."""
+"""Name of the load of all specified forces and preloads."""
 
 
 class Status(IntEnum):
-    """How a search for equilibrium ended; `CRITICAL`: a limit point or a bifurcation is on the way, `NOT_FOLLOWED`: the way ends."""
+    """Status of an equilibrium solution; `CRITICAL`: a limit point or a bifurcation is on the path, `NOT_FOLLOWED`: the path ends."""
 
     CONVERGED = 0
     NOT_CONVERGED = 1
@@ -31,11 +31,11 @@ class Status(IntEnum):
 class SolverOptions(CheckedFields):
     """Solver options of equilibria.
 
-    A search ends at steps below `step` (lengths over the flexures', radians, amplitudes) and gaps below `gap`, or after `iterations`.
+    An iteration ends at steps below `step` (lengths over the flexures', radians, amplitudes) and gaps below `gap`, or after `iterations`.
 
-    `limit` is the largest step, translations over the stage's `reach`. What fails is loaded in steps, the least 2^-`halvings` of the load;
-    and what still fails follows its load by arc length, `arcs` steps at most, `past` limits too: the load may then
-    fall and rise again to where it is whole, as a stage does that snaps through.
+    `limit` is the largest step, translations over the stage's `reach`. Failed cases are loaded in steps, the smallest 2^-`halvings` of the
+    load, then by arc length with at most `arcs` steps. With `past`, the path also passes limit points: the load may decrease and increase
+    again to its whole value, as in a snap-through.
     """
 
     step: float = 1e-9
@@ -49,9 +49,9 @@ class SolverOptions(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Loads of b cases: `inputs` (b, m) by the model's channels, `gravity` (b, 3) [m/s^2], and the share `constant` (b,) of stated forces.
+    """Loads of b cases: `inputs` (b, m) by the model's channels, `gravity` (b, 3) [m/s^2], fraction `constant` (b,) of specified forces.
 
-    Preloads count as stated forces. Wrenches of inputs are dead: their forces and moments keep their directions in space.
+    Preloads count as specified forces. Wrenches of inputs keep the directions of their forces and moments in space.
     """
 
     inputs: Array
@@ -59,19 +59,19 @@ class Loads:
     constant: Array
 
     def of(self, cases: Array) -> Loads:
-        """Those of some cases."""
+        """Select cases."""
         return Loads(self.inputs[cases], self.gravity[cases], self.constant[cases])
 
     def times(self, share: Array) -> Loads:
-        """A share (b,) of each case's."""
+        """Scale each case by a fraction (b,)."""
         return Loads(self.inputs * share[:, None], self.gravity * share[:, None], self.constant * share)
 
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """Where everything is, in b cases: bodies' references `position` (b, n + 1, 3) and `turn` (b, n + 1, 3, 3), the ground last.
+    """Configuration of b cases: body references `position` (b, n + 1, 3) and `turn` (b, n + 1, 3, 3), the ground last.
 
-    `strain` (l, b, q) and `wrench` (l, b, 6) of each group of flexures, `held` (b, c) the reactions of locked and held freedoms.
+    `strain` (l, b, q) and `wrench` (l, b, 6) are by group of flexures, `held` (b, c) are the reactions of locked and fixed freedoms.
     """
 
     position: Array
@@ -81,12 +81,12 @@ class Pose:
     held: Array
 
     def of(self, cases: Array) -> Pose:
-        """That of some cases."""
+        """Select cases."""
         strain, wrench = (tuple(each[:, cases] for each in group) for group in (self.strain, self.wrench))
         return Pose(self.position[cases], self.turn[cases], strain, wrench, self.held[cases])
 
     def put(self, cases: Array, other: Pose) -> Pose:
-        """This pose with that of some cases exchanged."""
+        """Replace some cases."""
         strain, wrench = (
             tuple(put(one, (slice(None), cases), new) for one, new in zip(mine, theirs, strict=True))
             for mine, theirs in ((self.strain, other.strain), (self.wrench, other.wrench))
@@ -96,7 +96,7 @@ class Pose:
 
 
 def put(array: Array, places: Any, values: Array) -> Array:
-    """A copy of an array with other values at some places."""
+    """Return a copy of an array with other values at some indices."""
     result = np.array(array)
     result[places] = values
     return result

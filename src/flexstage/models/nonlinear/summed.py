@@ -1,4 +1,4 @@
-"""Sums of blocks over a stage's unknowns: dense for some ten bodies, without the zeros for many (docs/decisions/0078)."""
+"""Block sums over the unknowns of a stage: dense for about ten bodies, sparse for many (docs/decisions/0078)."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from flexstage.base.number import Array
 from flexstage.models.nonlinear.elements.condense import solve
 
 MANY = 400
-"""Unknowns from which on zeros are left out."""
+"""Number of unknowns above which sums are sparse."""
 
 
 class Sum(Protocol):
-    """A matrix of b cases to which blocks are added."""
+    """Protocol of a matrix of b cases to which blocks are added."""
 
     def add(self, rows: slice, columns: slice, block: Array) -> None:
         """Add a block (b, r, c)."""
@@ -24,12 +24,12 @@ class Sum(Protocol):
         """Add blocks (l, b, r, c), each by its first row and column (l,)."""
 
     def total(self, kept: Array) -> Array | tuple[Any, ...]:
-        """The rows and columns kept: (b, n, n), or sparse matrices."""
+        """Return the kept rows and columns: (b, n, n), or sparse matrices."""
         ...
 
 
 class Dense:
-    """All of the matrix."""
+    """Dense sum."""
 
     def __init__(self, cases: int, size: int) -> None:
         self._whole = np.zeros((cases, size, size))
@@ -45,12 +45,12 @@ class Dense:
             self._whole[:, row : row + high, column : column + wide] += block
 
     def total(self, kept: Array) -> Array:
-        """(b, n, n)."""
+        """Return (b, n, n)."""
         return self._whole[:, kept[:, None], kept]
 
 
 class Blocks:
-    """The blocks, each with its first row and column."""
+    """Sparse sum: the blocks, each with its first row and column."""
 
     def __init__(self, cases: int, size: int) -> None:
         self._cases, self._size = cases, size
@@ -66,7 +66,7 @@ class Blocks:
         self._found.append((rows, columns, blocks))
 
     def total(self, kept: Array) -> tuple[Any, ...]:
-        """Sparse matrices (n, n), one a case."""
+        """Return sparse matrices (n, n), one per case."""
         place = np.full(self._size, -1)
         place[kept] = np.arange(len(kept))
         rows, columns, values = [np.zeros(0, dtype=int)], [np.zeros(0, dtype=int)], [np.zeros((self._cases, 0))]
@@ -77,18 +77,18 @@ class Blocks:
             columns.append(np.broadcast_to(place[second[:, None, None] + np.arange(wide)], shape).ravel())
             values.append(np.moveaxis(blocks, 1, 0).reshape(self._cases, -1))
         row, column, value = np.concatenate(rows), np.concatenate(columns), np.concatenate(values, axis=1)
-        seen = (row >= 0) & (column >= 0)
+        inside = (row >= 0) & (column >= 0)
         size = len(kept)
-        return tuple(scipy.sparse.coo_array((each[seen], (row[seen], column[seen])), (size, size)).tocsc() for each in value)
+        return tuple(scipy.sparse.coo_array((each[inside], (row[inside], column[inside])), (size, size)).tocsc() for each in value)
 
 
 def empty_sum(cases: int, size: int) -> Sum:
-    """A sum of nothing yet, (b, size, size)."""
+    """Return a zero sum (b, size, size)."""
     return Blocks(cases, size) if size > MANY else Dense(cases, size)
 
 
 def solved(matrix: Array | tuple[Any, ...], right: Array) -> Array:
-    """Solutions (b, n) for right sides (b, n); NaN where a case is singular."""
+    """Solve for right sides (b, n): (b, n); NaN if a case is singular."""
     if isinstance(matrix, np.ndarray):
         return solve(matrix, right[..., None])[..., 0]
     return np.stack([_solved(one, each) for one, each in zip(matrix, right, strict=True)])
@@ -102,9 +102,9 @@ def _solved(matrix: Any, right: Array) -> Array:
 
 
 def negative_pivots(matrix: Any, freedoms: int) -> int:
-    """Negative eigenvalues of the symmetric form of [K, C^T; C, 0] with `freedoms` in K, by Sylvester's law of inertia.
+    """Count the negative eigenvalues of the symmetric form of [K, C^T; C, 0] with `freedoms` in K, by Sylvester's law of inertia.
 
-    Those of K by the signs of its pivots, and those of - C K^-1 C^T.
+    Those of K by the signs of its pivots, plus those of - C K^-1 C^T.
     """
     even = (0.5 * (matrix + matrix.T)).tocsc()
     factor = scipy.sparse.linalg.splu(
@@ -116,9 +116,9 @@ def negative_pivots(matrix: Any, freedoms: int) -> int:
 
 
 def nearest_descent(matrix: Any, scale: Array) -> tuple[float, Array]:
-    """The lowest eigenvalue of K over `scale` (n,) on both sides among motions that C allows, and its vector (n,), of [K, C^T; C, 0].
+    """Compute the lowest eigenvalue of K over `scale` (n,) on both sides in the null space of C, and its vector (n,), of [K, C^T; C, 0].
 
-    By Lanczos' method on the inverse: of the two that are nearest to zero the negative one, if there is one.
+    Lanczos' method on the inverse: the negative one of the two eigenvalues nearest to zero, if any.
     """
     count = len(scale)
     whole = np.concatenate([scale, np.ones(matrix.shape[0] - count)])

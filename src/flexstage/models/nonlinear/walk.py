@@ -1,7 +1,7 @@
-"""Bodies of large stages where their flexures put them: along a tree from the ground, in which no link is left open.
+"""Body poses of large stages by their flexures: along a spanning tree from the ground, without gaps in its links.
 
-A step turns bodies by finite rotations and shifts them by what these do to first order. Along a chain of many links the difference opens
-every one of them, and the forces that close them again are as false as those of displacement elements.
+A step rotates bodies finitely and displaces them to first order. Along a chain of many links the difference opens every link. The restoring
+forces are then wrong, as those of displacement elements.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from flexstage.models.nonlinear.state import Loads, Pose
 
 @dataclass(frozen=True)
 class Step:
-    """A flexure of the tree by its group and number, the body that it leads to, and whether its `start` is nearer to the ground."""
+    """Flexure of the tree by group and number, the body at its outer end, and whether its `start` is nearer to the ground."""
 
     group: int
     link: int
@@ -31,7 +31,7 @@ class Step:
 
 @SESSION.keep(16)
 def tree(model: Nonlinear) -> tuple[Step, ...]:
-    """The flexures by which bodies are reached from the ground, the nearest first; bodies beyond other links are not reached.
+    """Return the flexures that reach bodies from the ground, nearest first; bodies beyond other links are not reached.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -44,18 +44,18 @@ def tree(model: Nonlinear) -> tuple[Step, ...]:
         for link, (one, other) in enumerate(zip(group.first.tolist(), group.second.tolist(), strict=True)):
             joins.setdefault(one, []).append((other, Step(number, link, other, start=True)))
             joins.setdefault(other, []).append((one, Step(number, link, one, start=False)))
-    found, waiting = [], deque([ground])
+    steps, waiting = [], deque([ground])
     while waiting:
         for other, step in joins.get(waiting.popleft(), ()):
             if other not in reached:
                 reached.add(other)
                 waiting.append(other)
-                found.append(step)
-    return tuple(found)
+                steps.append(step)
+    return tuple(steps)
 
 
 def walked(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:
-    """The pose with bodies where the flexures of the tree end, by their amplitudes and forces."""
+    """Compute the pose with bodies at the ends of the tree's flexures, by their amplitudes and forces."""
     ends, turns = [], []
     for number, group in enumerate(model.flexures):
         frame = np.moveaxis(pose.turn[:, group.first], 1, 0) @ group.turn[:, None]

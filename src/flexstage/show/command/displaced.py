@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -17,6 +17,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
 from flexstage.show.command.design import elastic_model
 from flexstage.show.command.options import temperature_option, text_option
+from flexstage.show.command.values import read_pairs
 from flexstage.show.table import Table, matrix_table
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ class Place:
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
         """Where the stage is brought, in SI units."""
-        return _values(self.at or (), "--at", lambda name: quantity_of(model, name))
+        return read_pairs(self.at or (), "--at", lambda name, value, where: parse(value, quantity_of(model, name), where=where))
 
     @property
     def options(self) -> str:
@@ -157,20 +158,12 @@ def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> 
     """Loads in SI units from texts NAME=VALUE."""
     units = {channel.name: channel.unit for channel in model.inputs}
 
-    def quantity(name: str) -> Quantity:
+    def read(name: str, value: str, where: str) -> float:
         if name not in units:
             raise refuse(f"{option} {name}", f'there is no load "{name}"', suggest_nearest(name, units))
-        return quantity_of_unit(units[name])
+        return parse(value, quantity_of_unit(units[name]), where=where)
 
-    return _values(texts, option, quantity)
-
-
-def _values(texts: Sequence[str], option: str, quantity: Callable[[str], Quantity]) -> dict[str, float]:
-    """Values in SI units from texts NAME=VALUE; refused where a name is given twice."""
-    pairs = [[part.strip() for part in text.partition("=")] for text in texts]
-    names = [name for name, _, _ in pairs]
-    require(Finding(f"{option} {name}", "it is given twice", "Say one value") for name in dict.fromkeys(names) if names.count(name) > 1)
-    return {name: parse(value, quantity(name), where=f"{option} {name}") for name, _, value in pairs}
+    return read_pairs(texts, option, read)
 
 
 def quantity_of(model: Nonlinear, drive: str) -> Quantity:

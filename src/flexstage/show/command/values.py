@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TypeVar
 
 from flexstage.analysis.dynamics.random_response import Rate, Spectrum
-from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.units.quantity import ANGLE, CURRENT, DISPLACEMENT, FREQUENCY, RESISTANCE, Quantity
 from flexstage.base.units.unit import parse
 from flexstage.models.linear.model import LinearModel
@@ -14,6 +15,7 @@ from flexstage.models.linear.port import ports
 from flexstage.spatial.frame import COMPONENTS
 
 _Value = TypeVar("_Value")
+_Name = TypeVar("_Name")
 _ASD_EXAMPLE = 'Write for example --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
 
 
@@ -41,7 +43,7 @@ def names(texts: Sequence[str] | None) -> tuple[str, ...]:
     return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
 
 
-def first_that_parses(text: str, known: Mapping[str, Quantity]) -> tuple[str, float] | None:
+def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name, float] | None:
     """The name of the first quantity that a text is of, and its value in SI units; nothing where it is of none."""
     for name, quantity in known.items():
         try:
@@ -64,25 +66,33 @@ def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
     return found
 
 
-def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
-    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of an option; all mistakes are reported together."""
-    found: dict[str, float] = {}
-    findings: list[Finding] = []
+def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str], _Value]) -> dict[str, _Value]:
+    """Read texts NAME=VALUE of an option by `read(name, value, where)`; refuse all that are wrong at once.
+
+    >>> read_pairs(["x=5 um"], "--at", lambda name, value, where: parse(value, DISPLACEMENT, where=where))
+    {'x': 5e-06}
+    """
+    values, found = Values(), dict[str, _Value]()
     for text in texts:
         name, _, value = (part.strip() for part in text.partition("="))
-        if name not in COMPONENTS or not value:
-            findings.append(
-                Finding(
-                    f"{option} {text}", "this names no motion and value", f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
-                )
-            )
-            continue
-        try:
-            found[name] = abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=f"{option} {text}"))
-        except DesignError as error:
-            findings += error.findings
-    require(findings)
+        if name in found:
+            values.findings.append(Finding(f"{option} {name}", "it is given twice", "Say one value"))
+        elif (one := values.attempt(partial(read, name, value, f"{option} {text}"))) is not None:
+            found[name] = one
+    require(values.findings)
     return found
+
+
+def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
+    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of an option; all mistakes are reported together."""
+
+    def read(name: str, value: str, where: str) -> float:
+        if name not in COMPONENTS or not value:
+            advice = f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
+            raise refuse(where, "this names no motion and value", advice)
+        return abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=where))
+
+    return read_pairs(texts, option, read)
 
 
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
@@ -90,26 +100,15 @@ def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]
 
     All mistakes are told together.
     """
-    found: dict[str, Spectrum] = {}
-    findings: list[Finding] = []
-    for text in densities:
-        name, _, value = (part.strip() for part in text.partition("="))
-        try:
-            found[name] = _spectrum(model, name, value, f"--input-asd {text}")
-        except DesignError as error:
-            findings += error.findings
-    require(findings)
-    return found
+    return read_pairs(densities, "--input-asd", partial(_spectrum, model))
 
 
 def _spectrum(model: LinearModel, name: str, value: str, where: str) -> Spectrum:
     unit = ports(model, ("platform",), (name,)).inputs[0].unit
     units = {Rate.VALUE: unit, Rate.VELOCITY: f"{unit}/s", Rate.ACCELERATION: f"{unit}/s^2"}
-    for rate, form in units.items():
-        density = Quantity("amplitude density", f"{form}/Hz^0.5", f"{form}/Hz^0.5", f"1e-9 {form}/Hz^0.5")
-        try:
-            return Spectrum(parse(value, density, where=where) ** 2, rate=rate)
-        except DesignError:
-            continue
+    forms = {rate: f"{form}/Hz^0.5" for rate, form in units.items()}
+    known = {rate: Quantity("amplitude density", form, form, f"1e-9 {form}") for rate, form in forms.items()}
+    if (fit := first_that_parses(value, known)) is not None:
+        return Spectrum(fit[1] ** 2, rate=fit[0])
     what = f'found "{value}", which is no amplitude density of {name} [{unit}/Hz^0.5] or of its rates'
-    raise DesignError([Finding(where, what, _ASD_EXAMPLE)])
+    raise refuse(where, what, _ASD_EXAMPLE)

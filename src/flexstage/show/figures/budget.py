@@ -95,7 +95,7 @@ def _stack_bars(axes: Any, shares: _Shares, totals: Sequence[str], label: str, p
 
 def _largest_parts(shares: _Shares) -> dict[str, Any]:
     """The largest parts and links of other units, the rest last, with their colours."""
-    parts = dict.fromkeys(part for each in shares.values() for part in each)
+    parts = dict.fromkeys(part for each in shares.values() for part, share in each.items() if share)
     size = {part: max(abs(each.get(part, 0.0)) for each in shares.values()) for part in parts}
     least = 2e-3 * max(size.values(), default=0.0)
     ranked = sorted((part for part in parts if size[part] > least), key=lambda part: -round(size[part], 12))

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.analysis.linear_statics.statics import DirectionalStiffness, Statics
 from flexstage.base.number import Array
+from flexstage.parts.profile import single
 from flexstage.show.display import number, to_typography
 from flexstage.show.figures.style import HALF, INK, MUTED, SERIES, canvas, style_context
 from flexstage.show.table import first_design
@@ -59,7 +60,7 @@ def _values(stiffness: DirectionalStiffness) -> str:
     most, least = (float(value) for value in 1e-6 * first_design(stiffness.principal, 1))
     if most - least < _ISOTROPIC * most:
         return f"{number(most, 4)} in every direction"
-    angle = float(np.rad2deg(np.ravel(stiffness.angle)[0]))
+    angle = float(np.rad2deg(single(stiffness.angle)))
     return f"{number(most, 4)} along {angle:.0f}°, {number(least, 4)} across"
 
 
@@ -67,6 +68,6 @@ def _principal_axes(axes: Any, stiffness: DirectionalStiffness, colour: str) -> 
     most, least = (float(value) for value in 1e-6 * first_design(stiffness.principal, 1))
     if most - least < _ISOTROPIC * most:
         return
-    angle = float(np.ravel(stiffness.angle)[0])
+    angle = single(stiffness.angle)
     for turn, reach in ((0.0, most), (0.5 * np.pi, least)):
         axes.plot([angle + turn, angle + turn + np.pi], [reach, reach], color=colour, linewidth=0.7, linestyle="--")

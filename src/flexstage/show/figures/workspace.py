@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Array, Number
+from flexstage.parts.profile import single
 from flexstage.show.display import DisplayUnit, display_unit_of, to_typography
 from flexstage.show.figures.hull import hull
 from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, style_context
@@ -98,6 +99,6 @@ def _strokes(workspace: Workspace, shown: _Shown) -> Array:
 def _command(axes: Any, command: Mapping[str, Number], x: _Shown, y: _Shown) -> None:
     if not {x.name, y.name} <= set(command):
         return
-    across, up = (each.unit.factor * float(np.real(np.ravel(command[each.name])[0])) for each in (x, y))
+    across, up = (each.unit.factor * single(command[each.name]) for each in (x, y))
     ends = across * np.array([-1, 1, 1, -1, -1]), up * np.array([-1, -1, 1, 1, -1])
     axes.plot(*ends, color=MUTED, linestyle="--", linewidth=0.9, label="commanded box")

@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.base.number import Array, Number, first_design
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
 from flexstage.parts.part import Part, inner
+from flexstage.parts.profile import single
 from flexstage.parts.section import Rectangle
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.show.scene.skin import ROUND, DrawnSurface, circle, extrude, face, join, loft, pierce, rectangle
@@ -25,7 +26,7 @@ def first_value(value: Number | None, default: float = 0.0) -> float:
     >>> first_value(np.array([2.0, 3.0])), first_value(None)
     (2.0, 0.0)
     """
-    return default if value is None else float(np.real(np.asarray(value).ravel()[0]))
+    return default if value is None else single(value)
 
 
 def part_length(part: Part) -> float:

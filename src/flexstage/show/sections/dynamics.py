@@ -12,7 +12,6 @@ from flexstage.show.display import number, percent
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
-from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import THIRD
 from flexstage.show.page import Abreast, Folded, Picture, Prose, Section, section
 from flexstage.show.scene.pictures import mode_picture
@@ -46,14 +45,9 @@ def mode_section(analysis: Analysis, data: StageData) -> Section | None:
         "Undamped modes, strokes held. A mode is the platform's if the platform has a large share of the kinetic energy; modes of single "
         "units that lie near the platform's are listed as local neighbours."
     )
-    if analysis.loaded is not None and analysis.loaded.text:
-        text = f"{text} {analysis.loaded.text}"
-    if analysis.second_order is not None:
-        text = f"{text} {analysis.second_order.text}"
-    spectrum = to_svg(spectrum_figure(modes), "spectrum", "Modes over frequency and the platform's share of each")
     shapes = tuple(_shapes(modes, data))
     gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []
-    return section("Modes", [Prose(text), mode_table(modes), Picture(spectrum), *gallery])
+    return section("Modes", [Prose(text), mode_table(modes), *gallery])
 
 
 def _shapes(modes: Modes, data: StageData) -> Iterator[Picture]:

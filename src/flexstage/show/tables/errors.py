@@ -9,6 +9,7 @@ from flexstage.analysis.linear_statics.drift import Drift
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
 from flexstage.mechanism.assembly.expansion import Ground
+from flexstage.parts.profile import single
 from flexstage.show.display import number
 from flexstage.show.table import Table, first_design, matrix_table
 from flexstage.show.tables.workspace import command_text
@@ -62,7 +63,7 @@ def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:
 def _budget_table(title: str, matrix: Matrix, sums: Array, budget: ErrorBudget) -> Table:
     values = np.concatenate([first_design(matrix.values, 2), sums], axis=1)
     columns = (*matrix.columns, "linear sum", "root sum square")
-    warm = number(float(np.real(np.ravel(budget.temperature)[0])))
+    warm = number(single(budget.temperature))
     warmed = "" if "drift" in budget.reasons else f", and {warm} K of uniform temperature change"
     notes = [f"Largest errors over {command_text(budget.command)}, all at once{warmed}."]
     if not np.all(np.isnan(values[:, matrix.columns.index("gauge noise")])):

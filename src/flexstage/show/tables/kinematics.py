@@ -6,6 +6,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show.display import number
 from flexstage.show.table import Column, Table, make_table, matrix_table, merge_rows, text_table
+from flexstage.show.tables.overview import count_text
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 
@@ -36,13 +37,12 @@ def actuation_text(kinematics: Kinematics) -> str:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> actuation_text(ideal(double_triangle()))
-    'Six actuators drive six freedoms: the strokes determine the platform, and every command is free of stress in the ideal stage.'
+    '6 strokes, 6 DOFs: the strokes determine the platform, and every command is free of stress in the ideal stage.'
     """
     if kinematics.thrusts and not kinematics.actuators:
         return _command_text(kinematics)
     strokes, mobility = len(kinematics.actuators), kinematics.mobility
-    counted = f"{_count(strokes)} actuator{'s' if strokes != 1 else ''} drive{'s' if strokes == 1 else ''} {_count(mobility)} freedom"
-    counted = counted[:1].upper() + counted[1:] + ("s" if mobility != 1 else "")
+    counted = f"{count_text(strokes, 'stroke')}, {count_text(mobility, 'DOF')}"
     if kinematics.thrusts and not kinematics.actuated:
         return f"{counted}: the strokes do not determine the platform, and the mapping R_a is refused. {_command_text(kinematics)}"
     if not kinematics.actuated:
@@ -55,12 +55,12 @@ def actuation_text(kinematics: Kinematics) -> str:
 
 def _command_text(kinematics: Kinematics) -> str:
     """Which ideal motions forces, with the strokes, can command."""
-    known, count = kinematics.commanded, len(kinematics.thrusts)
+    known = kinematics.commanded
     left = [name for name in kinematics.coordinates if name not in known]
-    forces = f"{_count(count)} force actuator{'s' if count != 1 else ''} determine{'s' if count == 1 else ''} no motion"
-    reach = f"with any strokes {'they' if count != 1 else 'it'} can push along {', '.join(known)}" if known else "none can be pushed alone"
+    reach = f"with any strokes they push along {', '.join(known)}" if known else "they push along no coordinate alone"
     rest = f", not along {', '.join(left)} alone" if known and left else ""
-    return f"{forces[:1].upper()}{forces[1:]}; {reach}{rest}. How far is the elastic model's answer."
+    forces = count_text(len(kinematics.thrusts), "force actuator")
+    return f"{forces}: forces determine no motion; {reach}{rest}. The elastic model gives how far."
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
@@ -79,11 +79,6 @@ def force_table(kinematics: Kinematics) -> Table | None:
     rows = tuple(f"{name} [{WRENCH_UNITS[FORCES.index(name)]}]" for name in found.rows)
     columns = tuple(f"{name} [{unit}]" for name, unit in zip(found.columns, kinematics.thrust_inputs, strict=True))
     return matrix_table("Force map W" if whole else "Force map V^T W", Matrix(found.values, rows, columns, "1"), notes=[note])
-
-
-def _count(number_of: int) -> str:
-    words = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-    return words[number_of] if number_of < len(words) else str(number_of)
 
 
 def mapping_table(kinematics: Kinematics) -> Table:

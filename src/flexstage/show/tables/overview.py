@@ -13,6 +13,7 @@ from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.number import first_design
+from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
 from flexstage.show.tables.lost_motion import loss_table
@@ -74,19 +75,27 @@ def count_text(count: int, thing: str) -> str:
 
 
 def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
-    """Requirements, the platform's axes and modes, lost motion, and what its parts bear."""
+    """Requirements, then the summary without the notes of its first table."""
     yield verdict_table(analysis.verdicts)
+    yield from summary_tables(analysis, explained=False)
+
+
+def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | str | None]:
+    """The platform's axes and modes, lost motion, and what its parts bear; the first table `explained` by notes.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> [each.title for each in summary_tables(analyse(double_triangle(), Model.IDEAL), explained=True) if isinstance(each, Table)]
+    ['Platform']
+    """
     yield load_line(analysis)
     yield small_line(analysis)
-    yield _without_notes(axis_table(analysis))
+    axes = axis_table(analysis)
+    yield axes if explained or axes is None else replace(axes, notes=())
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.modes is None else lowest_mode(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield _strength_text(analysis)
-
-
-def _without_notes(table: Table | None) -> Table | None:
-    return None if table is None else replace(table, notes=())
 
 
 def axis_table(analysis: Analysis) -> Table | None:
@@ -208,14 +217,10 @@ def _strength_text(analysis: Analysis) -> str | None:
     buckling = analysis.buckling if reach is None else reach.buckling
     said: list[str] = []
     if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {_first(reach.stress.min_safety, 4)} against yield, in {reach.stress.weakest}")
+        said.append(f"least safety factor {number(single(reach.stress.min_safety), 4)} against yield, in {reach.stress.weakest}")
     if buckling is not None:
-        said.append(f"load factor of buckling {_first(buckling.min_factor, 4)}")
+        said.append(f"load factor of buckling {number(single(buckling.min_factor), 4)}")
     return f"Strength: {', '.join(said)}." if said else None
-
-
-def _first(values: object, digits: int) -> str:
-    return number(float(np.ravel(np.real(np.asarray(values)))[0]), digits)
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:

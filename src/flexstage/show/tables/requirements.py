@@ -8,8 +8,9 @@ import numpy as np
 
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.base.units.quantity import Quantity
+from flexstage.parts.profile import single
 from flexstage.show.display import DIGITS, field_unit, format_value, number, percent
-from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 _LEAST = 0.01
 
@@ -83,7 +84,7 @@ def first_margin(verdict: Verdict) -> float:
     >>> round(first_margin(judge(double_triangle())[6]), 4)
     0.0601
     """
-    return float(first_design(np.atleast_1d(verdict.margin), 1)[0])
+    return single(verdict.margin)
 
 
 def value_text(verdict: Verdict) -> str:
@@ -96,7 +97,7 @@ def value_text(verdict: Verdict) -> str:
     """
     if verdict.value is None:
         return "unknown"
-    return quantity_text(float(first_design(np.atleast_1d(verdict.value), 1)[0]), verdict.requirement.quantity)
+    return quantity_text(single(verdict.value), verdict.requirement.quantity)
 
 
 def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str:

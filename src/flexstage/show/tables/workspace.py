@@ -12,6 +12,7 @@ from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import Utilisation
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.number import Number
+from flexstage.parts.profile import single
 from flexstage.show.display import format_value, number
 from flexstage.show.table import Table, first_design, merge_rows, result_table
 from flexstage.spatial.frame import MOTION
@@ -23,7 +24,7 @@ def command_text(command: Mapping[str, Number]) -> str:
     >>> command_text({"x": 50e-6, "rz": 244e-6})
     'x +-50 um, rz +-244 urad'
     """
-    return ", ".join(f"{name} +-{format_value(float(np.real(np.ravel(value)[0])), MOTION.unit(name))}" for name, value in command.items())
+    return ", ".join(f"{name} +-{format_value(single(value), MOTION.unit(name))}" for name, value in command.items())
 
 
 def stroke_tables(workspace: Workspace) -> Iterator[Table | None]:
@@ -40,7 +41,7 @@ def corner_table(corner: Utilisation) -> Table | None:
     >>> corner_table(Utilisation(("B1",), {"x": 5e-05}, np.array([5e-5]), np.array([7.5e-5]), "")).texts()[1]
     ['B1', '50', '75', '66.67 %']
     """
-    scale = float(first_design(np.atleast_1d(corner.scale), 1)[0])
+    scale = single(corner.scale)
     verdict = "within reach" if scale >= 1.0 else "out of reach"
     return result_table(
         corner, notes=[f"{command_text(corner.command)}, all at once: {verdict}; the whole box may be scaled by {number(scale, 4)}."]

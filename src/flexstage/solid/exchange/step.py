@@ -23,6 +23,66 @@ from flexstage.solid.fea.geometry.stage_pieces import Stage, require_shapes, sta
 _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);[ \t]*\r?\n", re.DOTALL)
 _REFERENCE = re.compile(r"#(\d+)")
 
+_HEADING = """ISO-10303-21;
+HEADER;
+FILE_DESCRIPTION(('stage as drawn by flexstage, mm'),'2;1');
+FILE_NAME({name},'',(''),(''),'flexstage','flexstage','');
+FILE_SCHEMA(('AUTOMOTIVE_DESIGN {{ 1 0 10303 214 1 1 1 1 }}'));
+ENDSEC;
+DATA;
+"""
+_BEGIN = """#1=APPLICATION_CONTEXT('core data for automotive mechanical design processes');
+#2=APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#1);
+#3=PRODUCT_CONTEXT('',#1,'mechanical');
+#4=PRODUCT({name},{name},'',(#3));
+#5=PRODUCT_RELATED_PRODUCT_CATEGORY('assembly',$,(#4));
+#6=PRODUCT_DEFINITION_FORMATION('','',#4);
+#7=PRODUCT_DEFINITION_CONTEXT('part definition',#1,'design');
+#8=PRODUCT_DEFINITION('design','',#6,#7);
+#9=SHAPE_REPRESENTATION('',({places}),#16);
+#10=PRODUCT_DEFINITION_SHAPE('','',#8);
+#11=SHAPE_DEFINITION_REPRESENTATION(#10,#9);
+#12=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));
+#13=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));
+#14=(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT());
+#15=UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-07),#12,'distance_accuracy_value','confusion accuracy');
+#16=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#15))GLOBAL_UNIT_ASSIGNED_CONTEXT((#12,#13,#14))"""
+_ASSEMBLY = f"""{_BEGIN}REPRESENTATION_CONTEXT('','3D'));
+#17=CARTESIAN_POINT('',(0.,0.,0.));
+#18=DIRECTION('',(0.,0.,1.));
+#19=DIRECTION('',(1.,0.,0.));
+#20=AXIS2_PLACEMENT_3D('',#17,#18,#19);
+"""
+"""The assembly and the context of its shapes; the places of parts are filled in."""
+_USE = """#1=NEXT_ASSEMBLY_USAGE_OCCURRENCE('{count}',{name},'',{root},{definition},$);
+#2=CARTESIAN_POINT('',(0.,0.,0.));
+#3=DIRECTION('',(0.,0.,1.));
+#4=DIRECTION('',(1.,0.,0.));
+#5=AXIS2_PLACEMENT_3D('',#2,#3,#4);
+#6=ITEM_DEFINED_TRANSFORMATION('','',{origin},#5);
+#7=(REPRESENTATION_RELATIONSHIP('','',{shape},{whole})REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#6)SHAPE_REPRESENTATION_RELATIONSHIP());
+#8=PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#1);
+#9=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#7,#8);
+#10=DESCRIPTIVE_REPRESENTATION_ITEM({material},'');
+#11=PROPERTY_DEFINITION('material property','material name',{definition});
+#12=REPRESENTATION('material name',(#10),{context});
+#13=PROPERTY_DEFINITION_REPRESENTATION(#11,#12);
+#14=(MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.));
+#15=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));
+#16=DERIVED_UNIT_ELEMENT(#14,1.);
+#17=DERIVED_UNIT_ELEMENT(#15,-3.);
+#18=DERIVED_UNIT((#16,#17));
+#19=MEASURE_REPRESENTATION_ITEM('density measure',POSITIVE_RATIO_MEASURE({density:.10E}),#18);
+#20=PROPERTY_DEFINITION('material property','density',{definition});
+#21=REPRESENTATION('density',(#19),{context});
+#22=PROPERTY_DEFINITION_REPRESENTATION(#20,#21);
+"""
+"""A part in the assembly, with name and density of its material as CAD systems exchange them."""
+_ROOT, _WHOLE, _CONTEXT, _ORIGIN = "#8", "#9", "#16", "#20"
+"""Definition, shape, context and axes of the assembly."""
+_PLACE = 5
+"""The axes of a part in the assembly."""
+
 
 @dataclass(frozen=True, eq=False)
 class Part:
@@ -78,19 +138,38 @@ def step_text(name: str, parts: Sequence[Part]) -> str:
     'ISO-10303-21;'
     """
     colours = palette(part.material for part in parts)
-    lines = _Lines()
-    root = _root(lines, name)
+    used, places, entities = 20, [_ORIGIN], list[str]()
     with temporary_folder() as folder:
         for part in parts:
-            _append(lines, root, part, _write_entities(part, colours[part.material], folder / "part.step"))
-    placed = ",".join(f"#{number}" for number in root.axes)
-    lines.put(f"SHAPE_REPRESENTATION('',({placed}),#{root.context})", root.shape)
-    heading = (
-        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('stage as drawn by flexstage, mm'),'2;1');\n"
-        f"FILE_NAME({quote(name)},'',(''),(''),'flexstage','flexstage','');\n"
-        "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));\nENDSEC;\nDATA;\n"
+            own = _write_entities(part, colours[part.material], folder / "part.step")
+            offset, used = used + 1, used + 1 + max(own)
+            entities += (_name_entity(entity, part.name) for entity in _renumbered(own, offset))
+            entities += _use(part, len(places), own, offset, used)
+            places.append(f"#{used + _PLACE}")
+            used += _USE.count("\n")
+    return "".join(
+        [
+            _HEADING.format(name=quote(name)),
+            _ASSEMBLY.format(name=quote(name), places=",".join(places)),
+            *(f"{entity};\n" for entity in entities),
+            "ENDSEC;\nEND-ISO-10303-21;\n",
+        ]
     )
-    return heading + lines.text() + "ENDSEC;\nEND-ISO-10303-21;\n"
+
+
+def _use(part: Part, count: int, own: Mapping[int, str], offset: int, used: int) -> Iterator[str]:
+    """The entities that place a part in the assembly."""
+    values = {"root": _ROOT, "whole": _WHOLE, "context": _CONTEXT, "origin": _ORIGIN, "count": count, "density": part.density}
+    values |= {"name": quote(part.name), "material": quote(part.material), "definition": f"#{offset + _only(own, 'PRODUCT_DEFINITION(')}"}
+    shape = _REFERENCE.findall(own[_only(own, "SHAPE_DEFINITION_REPRESENTATION(")])[1]
+    for entity in _renumbered({int(number): text for number, text in _ENTITY.findall(_USE)}, used):
+        yield entity.format(shape=f"#{offset + int(shape)}", **values)
+
+
+def _renumbered(entities: Mapping[int, str], offset: int) -> Iterator[str]:
+    """Entities with their numbers moved up."""
+    for number, entity in entities.items():
+        yield _REFERENCE.sub(lambda match: f"#{int(match[1]) + offset}", f"#{number}={entity}")
 
 
 def quote(text: str) -> str:
@@ -109,69 +188,6 @@ def _letter(letter: str) -> str:
     return f"\\X4\\{code:08X}\\X0\\" if code > 0xFFFF else f"\\X2\\{code:04X}\\X0\\"
 
 
-class _Lines:
-    """Entities of the file, numbered as they come."""
-
-    def __init__(self) -> None:
-        self._entities: dict[int, str] = {}
-        self._next = 1
-
-    def reserve(self, count: int = 1) -> int:
-        first = self._next
-        self._next += count
-        return first
-
-    def put(self, entity: str, number: int | None = None) -> int:
-        number = self.reserve() if number is None else number
-        self._entities[number] = entity
-        return number
-
-    def text(self) -> str:
-        return "".join(f"#{number}={entity};\n" for number, entity in sorted(self._entities.items()))
-
-
-@dataclass(frozen=True)
-class _Root:
-    """Numbers of the assembly's entities; `axes` are the places of its parts."""
-
-    definition: int
-    shape: int
-    context: int
-    axes: list[int]
-
-
-def _root(lines: _Lines, name: str) -> _Root:
-    application = lines.put("APPLICATION_CONTEXT('core data for automotive mechanical design processes')")
-    lines.put(f"APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#{application})")
-    mechanical = lines.put(f"PRODUCT_CONTEXT('',#{application},'mechanical')")
-    product = lines.put(f"PRODUCT({quote(name)},{quote(name)},'',(#{mechanical}))")
-    lines.put(f"PRODUCT_RELATED_PRODUCT_CATEGORY('assembly',$,(#{product}))")
-    formation = lines.put(f"PRODUCT_DEFINITION_FORMATION('','',#{product})")
-    design = lines.put(f"PRODUCT_DEFINITION_CONTEXT('part definition',#{application},'design')")
-    definition = lines.put(f"PRODUCT_DEFINITION('design','',#{formation},#{design})")
-    shape = lines.reserve()
-    whole = lines.put(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
-    lines.put(f"SHAPE_DEFINITION_REPRESENTATION(#{whole},#{shape})")
-    return _Root(definition, shape, _context(lines), [_axes(lines)])
-
-
-def _context(lines: _Lines) -> int:
-    length = lines.put("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))")
-    angle = lines.put("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))")
-    solid = lines.put("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())")
-    accuracy = lines.put(f"UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-07),#{length},'distance_accuracy_value','confusion accuracy')")
-    return lines.put(
-        f"(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{accuracy}))"
-        f"GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length},#{angle},#{solid}))REPRESENTATION_CONTEXT('','3D'))"
-    )
-
-
-def _axes(lines: _Lines) -> int:
-    origin = lines.put("CARTESIAN_POINT('',(0.,0.,0.))")
-    up, along = lines.put("DIRECTION('',(0.,0.,1.))"), lines.put("DIRECTION('',(1.,0.,0.))")
-    return lines.put(f"AXIS2_PLACEMENT_3D('',#{origin},#{up},#{along})")
-
-
 def _write_entities(part: Part, colour: Colour, path: Path) -> dict[int, str]:
     """The entities that the CAD kernel writes for one solid."""
     solids = list(part.shape.solids)
@@ -183,59 +199,14 @@ def _write_entities(part: Part, colour: Colour, path: Path) -> dict[int, str]:
     return {int(number): entity for number, entity in _ENTITY.findall(data + "\n")}
 
 
-def _append(lines: _Lines, root: _Root, part: Part, entities: Mapping[int, str]) -> None:
-    """Take a solid's entities over, renumbered and renamed, and place it in the assembly."""
-    offset = lines.reserve(max(entities) + 1)
-    for number, entity in entities.items():
-        lines.put(_name_entity(_REFERENCE.sub(lambda match: f"#{int(match[1]) + offset}", entity), part.name), number + offset)
-    definition = offset + _only(entities, "PRODUCT_DEFINITION(")
-    shape = offset + _representation(entities)
-    use = lines.put(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{len(root.axes)}',{quote(part.name)},'',#{root.definition},#{definition},$)")
-    place, origin = _axes(lines), root.axes[0]
-    root.axes.append(place)
-    turn = lines.put(f"ITEM_DEFINED_TRANSFORMATION('','',#{origin},#{place})")
-    relation = lines.put(
-        f"(REPRESENTATION_RELATIONSHIP('','',#{shape},#{root.shape})"
-        f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{turn})SHAPE_REPRESENTATION_RELATIONSHIP())"
-    )
-    used = lines.put(f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#{use})")
-    lines.put(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{relation},#{used})")
-    _append_material(lines, part, definition, root.context)
-
-
 def _name_entity(entity: str, name: str) -> str:
     """Products and solids bear the part's name; written here, for the kernel's writer knows only some letters."""
-    if entity.startswith("PRODUCT("):
-        context = entity[entity.rindex(",") :]
-        return f"PRODUCT({quote(name)},{quote(name)},''{context}"
-    if entity.startswith("MANIFOLD_SOLID_BREP("):
-        return f"MANIFOLD_SOLID_BREP({quote(name)}{entity[entity.rindex(',') :]}"
-    return entity
+    kind, last = entity.partition("(")[0], entity[entity.rfind(",") :]
+    if kind.endswith("=PRODUCT"):
+        return f"{kind}({quote(name)},{quote(name)},''{last}"
+    return f"{kind}({quote(name)}{last}" if kind.endswith("=MANIFOLD_SOLID_BREP") else entity
 
 
 def _only(entities: Mapping[int, str], start: str) -> int:
     (number,) = (number for number, entity in entities.items() if entity.startswith(start))
     return number
-
-
-def _representation(entities: Mapping[int, str]) -> int:
-    """The shape representation that the product's definition points to."""
-    return int(_REFERENCE.findall(entities[_only(entities, "SHAPE_DEFINITION_REPRESENTATION(")])[1])
-
-
-def _append_material(lines: _Lines, part: Part, definition: int, context: int) -> None:
-    """Name and density of the material, as CAD systems exchange them."""
-    for name, item in _material_items(lines, part):
-        property_ = lines.put(f"PROPERTY_DEFINITION('material property','{name}',#{definition})")
-        value = lines.put(f"REPRESENTATION('{name}',(#{item}),#{context})")
-        lines.put(f"PROPERTY_DEFINITION_REPRESENTATION(#{property_},#{value})")
-
-
-def _material_items(lines: _Lines, part: Part) -> Iterator[tuple[str, int]]:
-    yield "material name", lines.put(f"DESCRIPTIVE_REPRESENTATION_ITEM({quote(part.material)},'')")
-    mass = lines.put("(MASS_UNIT()NAMED_UNIT(*)SI_UNIT(.KILO.,.GRAM.))")
-    length = lines.put("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))")
-    elements = (lines.put(f"DERIVED_UNIT_ELEMENT(#{mass},1.)"), lines.put(f"DERIVED_UNIT_ELEMENT(#{length},-3.)"))
-    unit = lines.put(f"DERIVED_UNIT((#{elements[0]},#{elements[1]}))")
-    value = f"POSITIVE_RATIO_MEASURE({part.density:.10E})"
-    yield "density", lines.put(f"MEASURE_REPRESENTATION_ITEM('density measure',{value},#{unit})")

@@ -138,7 +138,7 @@ def _home(link: PlacedLink) -> str:
 def _numbers(design: Mechanism, address: str) -> Iterator[tuple[str, str]]:
     """The numbers of a vector by component; a number alone."""
     node = locate(design, address).node
-    if isinstance(node, VectorNode):
+    if isinstance(node, VectorNode) and not node.single:
         yield from ((name, f"{address}.{name}") for name in COMPONENTS[: len(node.items)])
     elif isinstance(node, NumberNode):
         if get(design, address) is None:

@@ -62,24 +62,18 @@ class History:
         """With another text; itself where that is the same."""
         if text == self.text:
             return self
-        past = (*self.past, self.text)[-_MOST:]
-        return replace(self, text=text, past=past, future=(), revision=self.revision + 1, page=page)
+        return self._step(text, (*self.past, self.text)[-_MOST:], (), page)
 
     def undo(self, page: int) -> History:
-        """With the text before."""
-        if not self.past:
-            return self
-        return replace(
-            self, text=self.past[-1], past=self.past[:-1], future=(self.text, *self.future), revision=self.revision + 1, page=page
-        )
+        """The text before."""
+        return self._step(self.past[-1], self.past[:-1], (self.text, *self.future), page) if self.past else self
 
     def redo(self, page: int) -> History:
-        """With the text after."""
-        if not self.future:
-            return self
-        return replace(
-            self, text=self.future[0], past=(*self.past, self.text), future=self.future[1:], revision=self.revision + 1, page=page
-        )
+        """The text that was undone."""
+        return self._step(self.future[0], (*self.past, self.text), self.future[1:], page) if self.future else self
+
+    def _step(self, text: str, past: tuple[str, ...], future: tuple[str, ...], page: int) -> History:
+        return replace(self, text=text, past=past, future=future, revision=self.revision + 1, page=page)
 
     def pin(self, name: str, *, keep: bool) -> History:
         """With the present text under a name, or without that name."""

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -180,19 +181,21 @@ def _actuators(mechanism: Mechanism, assembly: Assembly) -> Iterator[Channel]:
     if assembly.strokes:
         limits = stroke_limits(mechanism)
         for name, low, high in zip(limits.actuators, first_design(limits.low, 1), first_design(limits.high, 1), strict=True):
-            yield _channel(name, "m", _known(low), _known(high))
+            yield _channel(name, "m", finite(low), finite(high))
     for name in assembly.thrusts:
         yield _channel(name, assembly.actuator(name).input.si, None, None)
 
 
 def _gauges(assembly: Assembly) -> Iterator[Channel]:
     for name, gauge in assembly.gauges.items():
-        half = _known(0.5 * float(np.ravel(np.real(gauge.gauge.range))[0]))
+        half = finite(0.5 * np.asarray(gauge.gauge.range))
         yield _channel(name, gauge.unit, None if half is None else -half, half)
 
 
-def _known(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def finite(value: Any) -> float | None:
+    """A number of the first design; nothing for one that is not finite, or absent."""
+    found = np.nan if value is None else float(np.ravel(np.real(value))[0])
+    return found if np.isfinite(found) else None
 
 
 def _sixfold(places: Iterable[str], components: Iterable[str]) -> Iterator[str]:

@@ -1,1 +1,1 @@
-"""Elements at large displacements: flexures, links and held coordinates."""
+"""Elements at large displacements: flexures, links and fixed coordinates."""

@@ -1,4 +1,4 @@
-"""The system of one flexure and its condensation: from amplitudes, end force and moment to the motion of its end (docs/nonlinear.md, 6)."""
+"""Condensation of one flexure: from amplitudes, end force and end moment to the motion of its end (docs/nonlinear.md, 6)."""
 
 from __future__ import annotations
 
@@ -13,45 +13,45 @@ from flexstage.models.nonlinear.elements.element import Tangent, field_system
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What the unknowns (..., q + 6) of a flexure do: `still` while its end stays, and `moved` (..., q + 6, 6) per motion of its end.
+    """Response of the unknowns (..., q + 6) of a flexure: `still` at a fixed end, and `moved` (..., q + 6, 6) per motion of its end.
 
-    Of a flexure with weight three more columns: per change of the weight in its start frame.
+    A flexure with weight has three more columns: per change of the weight in its start frame.
     """
 
     still: Array
     moved: Array
 
 
-def system(found: Tangent) -> Array:
-    """The matrix (..., q + 6, q + 6) of amplitudes, end force and end moment; symmetric where H is."""
-    size = found.hessian.shape[-1]
-    result = np.zeros((*found.hessian.shape[:-2], size + 6, size + 6))
-    result[..., :size, :size] = found.hessian
-    rows = np.concatenate([found.reach, found.turning], axis=-2)
+def system(tangent: Tangent) -> Array:
+    """Build the matrix (..., q + 6, q + 6) of amplitudes, end force and end moment; symmetric if H is."""
+    size = tangent.hessian.shape[-1]
+    result = np.zeros((*tangent.hessian.shape[:-2], size + 6, size + 6))
+    result[..., :size, :size] = tangent.hessian
+    rows = np.concatenate([tangent.reach, tangent.turning], axis=-2)
     result[..., :size, size:] = -np.swapaxes(rows, -1, -2)
     result[..., size:, :size] = rows
-    result[..., size : size + 3, size : size + 3] = found.soft
+    result[..., size : size + 3, size : size + 3] = tangent.soft
     return result
 
 
-def condense(found: Tangent, gap: Array) -> Answer:
-    """Solve for the motions of the end and for the residual; `gap` (..., 6) is how far the end lies off its body. NaN where singular."""
-    matrix = system(found)
-    size = found.hessian.shape[-1]
-    right = np.zeros((*matrix.shape[:-1], 7 if found.hung is None else 10))
-    right[..., :size, 0], right[..., size:, 0] = -found.gradient, -gap
+def condense(tangent: Tangent, gap: Array) -> Answer:
+    """Solve for the motions of the end and for the residual; `gap` (..., 6) is the distance of the end from its body. NaN if singular."""
+    matrix = system(tangent)
+    size = tangent.hessian.shape[-1]
+    right = np.zeros((*matrix.shape[:-1], 7 if tangent.hung is None else 10))
+    right[..., :size, 0], right[..., size:, 0] = -tangent.gradient, -gap
     right[..., size:, 1:7] = np.eye(6)
-    if found.hung is not None and found.swayed is not None:
-        right[..., :size, 7:] = np.swapaxes(found.hung, -1, -2)
-        right[..., size : size + 3, 7:] = -found.swayed[..., 0, :, :]
+    if tangent.hung is not None and tangent.swayed is not None:
+        right[..., :size, 7:] = np.swapaxes(tangent.hung, -1, -2)
+        right[..., size : size + 3, 7:] = -tangent.swayed[..., 0, :, :]
     answer = solve(matrix, right)
     return Answer(answer[..., 0], answer[..., 1:])
 
 
 def settle(law: FlexureLaw, strain: Array) -> Array:
-    """Amplitudes (..., b, q) whose plate fields have the least energy at their curvatures, in which it is quadratic.
+    """Compute amplitudes (..., b, q) with plate fields of least energy, which is quadratic in them, at the curvatures.
 
-    Newton's method on fields and curvatures at once overshoots in thin leaves, where stretching goes with their squares' product.
+    A joint Newton iteration on fields and curvatures overshoots in thin leaves, where stretching depends on their squared product.
     """
     count = law.modes.shape[-1]
     if strain.shape[-1] == count:
@@ -61,7 +61,7 @@ def settle(law: FlexureLaw, strain: Array) -> Array:
 
 
 def solve(matrix: Array, right: Array) -> Array:
-    """Solutions (..., n, m) of a batch of systems, NaN where one is singular or not finite."""
+    """Solve a batch of systems (..., n, m), NaN for singular or non-finite ones."""
     try:
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:

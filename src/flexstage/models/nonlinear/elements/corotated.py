@@ -1,8 +1,8 @@
-"""Superelements at large displacements: linear in a frame that turns with their ports (docs/nonlinear.md, 31).
+"""Superelements at large displacements: linear in a corotated frame of their ports (docs/nonlinear.md, 31).
 
-The frame R turns as the mean of the ports' bodies: the sum of log(R^T R_i) is zero. In it ports have moved by
-u_i = R^T (x_i - x) - (X_i - X), x and X the means of their places now and drawn, and turned by log(R^T R_i); the linear stiffness counts
-what is not rigid of that.
+The frame R is the mean rotation of the port bodies: the sum of log(R^T R_i) is zero. In it the ports have the displacements u_i = R^T (x_i
+- x) - (X_i - X), x and X the means of their current and nominal positions, and the rotations log(R^T R_i). The linear stiffness acts on
+their non-rigid part.
 """
 
 from __future__ import annotations
@@ -21,12 +21,15 @@ _TURNS = 8
 
 @dataclass(frozen=True, eq=False)
 class Corotated:
-    """A superelement: bodies of its p ports by number (p,), drawn arms (p, 3) to them, axes of the ports (p, 3, 3), in the stage's axes.
+    """A superelement: numbers (p,) of the bodies of its p ports, nominal arms (p, 3) to them, port axes (p, 3, 3), in stage axes.
 
-    `place` (p, 3) is where ports are drawn, `relative` (6 (p - 1), 6 p) takes their motions in the stage's axes to what `stiffness`
-    (6 (p - 1), 6 (p - 1)) strains, as in the linear model. `squares` (m,) are those of the inner modes' angular frequencies, `inertia`
-    (6 p + m, 6 p + m) over the ports in their axes and the modes; `mass`, its `centre` (3,) as drawn, and `share` (6 p, 3): what of an
-    acceleration of the whole each port carries.
+    - `place` (p, 3): nominal positions of the ports.
+    - `relative` (6 (p - 1), 6 p): from port motions in stage axes to the strains of `stiffness` (6 (p - 1), 6 (p - 1)), as in the linear
+      model.
+    - `squares` (m,): squared angular frequencies of the inner modes.
+    - `inertia` (6 p + m, 6 p + m): over the ports in their axes and the modes.
+    - `mass`, and its nominal `centre` (3,).
+    - `share` (6 p, 3): port load per acceleration of the element.
     """
 
     name: str
@@ -48,9 +51,9 @@ class Corotated:
 
 @dataclass(frozen=True, eq=False)
 class Moved:
-    """Ports in their turned frame: motions (..., 6 p), and their derivatives (..., 6 p, 6 p) by the motions of the bodies.
+    """Ports in the corotated frame: motions (..., 6 p), and their derivatives (..., 6 p, 6 p) by the body motions.
 
-    `frame` (..., 3, 3), its turning (..., 3, 6 p) and the motion of the mean place (..., 3, 6 p) by the same.
+    `frame` (..., 3, 3), and the derivatives of its rotation (..., 3, 6 p) and of the mean position (..., 3, 6 p).
     """
 
     motion: Array
@@ -61,7 +64,7 @@ class Moved:
 
 
 def moved(element: Corotated, position: Array, turn: Array) -> Moved:
-    """The ports at positions (..., p, 3) and rotations (..., p, 3, 3) of their bodies."""
+    """Compute the port motions at positions (..., p, 3) and rotations (..., p, 3, 3) of their bodies."""
     count = len(element.bodies)
     frame = _mean(turn)
     angle = logarithm(_transpose(frame)[..., None, :, :] @ turn)
@@ -92,23 +95,23 @@ def moved(element: Corotated, position: Array, turn: Array) -> Moved:
 
 
 def resist(element: Corotated, position: Array, turn: Array, gravity: Array) -> Array:
-    """What the element resists with (..., 6 p) on the bodies of its ports, its weight under `gravity` (..., 3) taken off."""
-    found = moved(element, position, turn)
-    strain = (element.relative @ found.motion[..., None])[..., 0]
+    """Compute the internal forces (..., 6 p) on the port bodies, less the weight under `gravity` (..., 3)."""
+    ports = moved(element, position, turn)
+    strain = (element.relative @ ports.motion[..., None])[..., 0]
     force = (element.relative.T @ (element.stiffness @ strain[..., None]))[..., 0]
-    pulled = (_transpose(found.frame) @ gravity[..., None])[..., 0]
+    pulled = (_transpose(ports.frame) @ gravity[..., None])[..., 0]
     force = force - (element.share @ pulled[..., None])[..., 0]
-    hanging = element.mass * (element.centre - np.mean(element.place, axis=0)) + (found.motion @ element.share)
-    lever = (found.frame @ hanging[..., None])[..., 0]
+    hanging = element.mass * (element.centre - np.mean(element.place, axis=0)) + (ports.motion @ element.share)
+    lever = (ports.frame @ hanging[..., None])[..., 0]
     weight = element.mass * gravity
-    own = (_transpose(found.rows) @ force[..., None])[..., 0]
+    own = (_transpose(ports.rows) @ force[..., None])[..., 0]
     return (
-        own - (_transpose(found.drift) @ weight[..., None])[..., 0] - (_transpose(found.turning) @ cross(lever, gravity)[..., None])[..., 0]
+        own - (_transpose(ports.drift) @ weight[..., None])[..., 0] - (_transpose(ports.turning) @ cross(lever, gravity)[..., None])[..., 0]
     )
 
 
 def stiffen_ports(element: Corotated, position: Array, turn: Array, gravity: Array) -> tuple[Array, Array]:
-    """The same, and its derivative (..., 6 p, 6 p), by complex steps."""
+    """Compute the internal forces and their derivative (..., 6 p, 6 p), by complex steps."""
     count = 6 * len(element.bodies)
     step = 1j * _STEP * np.eye(count).reshape(count, *([1] * (position.ndim - 2)), -1, 6)
     stepped = resist(element, position + step[..., :3], exponential(step[..., 3:]) @ turn, gravity)
@@ -116,12 +119,12 @@ def stiffen_ports(element: Corotated, position: Array, turn: Array, gravity: Arr
 
 
 def _mean(turn: Array) -> Array:
-    """The mean (..., 3, 3) of rotations (..., p, 3, 3): of H. Karcher, found from the first."""
-    found = turn[..., 0, :, :]
+    """The mean (..., 3, 3) of rotations (..., p, 3, 3) by H. Karcher's definition, iterated from the first."""
+    mean = turn[..., 0, :, :]
     for _ in range(_TURNS):
-        away = np.mean(logarithm(_transpose(found)[..., None, :, :] @ turn), axis=-2)
-        found = found @ exponential(away)
-    return found
+        away = np.mean(logarithm(_transpose(mean)[..., None, :, :] @ turn), axis=-2)
+        mean = mean @ exponential(away)
+    return mean
 
 
 def _transpose(matrix: Array) -> Array:

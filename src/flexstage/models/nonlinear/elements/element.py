@@ -1,7 +1,7 @@
 """One flexure at large displacements: the mixed functional's residual and its derivatives (docs/nonlinear.md, 1 to 8).
 
-Everything is in the flexure's start frame, lengths over its length, forces over E I / L^2. Tables of a law lead with axes of flexures,
-states have one more, of loads: amplitudes (..., b, q), force and moment (..., b, 3).
+Everything is in the flexure's start frame, lengths over its length, forces over E I / L^2. Tables of a law lead with axes of flexures;
+states have one more axis, of loads: amplitudes (..., b, q), force and moment (..., b, 3).
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ from flexstage.spatial.rotation import cross, exponential, magnus
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """How a flexure lies: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its points, its rotation there and at its end.
+    """Configuration of a flexure: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its points, rotation there and at its end.
 
     `rate` (..., b, n, 3) is r', `place` (..., b, n, 3) is r, `end` (..., b, 3) is r at its end; `soft` (..., b, n, 3, 3) is R C_n R^T,
-    `tension` (..., b, n) is N; `force` at the end and `weight` are those it lies under.
+    `tension` (..., b, n) is N.
+
+    `force` at the end and `weight` are its loads.
     """
 
     rule: Rule
@@ -43,8 +45,10 @@ class Shape:
 class Tangent:
     """Residual `gradient` (..., b, q) of the amplitudes and the blocks of the derivative (docs/nonlinear.md, 6).
 
-    `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n. Of a
-    flexure with weight, `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are what its mean place does by amplitudes, force and weight.
+    `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n.
+
+    For a flexure with weight, `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are the derivatives of its mean position by amplitudes,
+    force and weight.
     """
 
     gradient: Array
@@ -57,7 +61,7 @@ class Tangent:
 
 
 def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = None) -> Shape:
-    """The flexure at given amplitudes and end force; `weight` (..., b, 3) is its own load per length, over E I / L^3."""
+    """Compute the configuration at given amplitudes and end force; `weight` (..., b, 3) is the weight per length, over E I / L^3."""
     rule = gauss(law.modes.shape[-3])
     count = law.modes.shape[-1]
     curvature = _apply(law.modes, strain[..., :count])
@@ -74,58 +78,59 @@ def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = N
     return Shape(rule, curvature, plate, turn, end_turn, rate, rule.running @ rate, end, soft, local[..., 0], force, weight)
 
 
-def tangent(law: FlexureLaw, strain: Array, moment: Array, found: Shape) -> Tangent:
-    """Residual and derivatives at a shape (docs/nonlinear.md, 4 to 8)."""
-    rule, modes = found.rule, law.modes[..., None, :, :, :]
+def tangent(law: FlexureLaw, strain: Array, moment: Array, config: Shape) -> Tangent:
+    """Compute residual and derivatives at a configuration (docs/nonlinear.md, 4 to 8)."""
+    rule, modes = config.rule, law.modes[..., None, :, :, :]
     weights = rule.weights[:, None, None]
     size, count = modes.shape[-3], modes.shape[-1]
-    forces = _forces(rule, found.force, found.weight)
-    moments = moment[..., None, :] + _lever(found, forces)
-    rates = found.turn @ modes
+    forces = _forces(rule, config.force, config.weight)
+    moments = moment[..., None, :] + _lever(config, forces)
+    rates = config.turn @ modes
     flat = rates.reshape(*rates.shape[:-3], size, 3 * count)
     turning = (rule.weights @ flat).reshape(*rates.shape[:-3], 3, count)
     turned = (rule.running @ flat).reshape(rates.shape)
-    axis = found.turn[..., 0]
-    twist = law.trapeze[..., None, None, None] * found.curvature[..., 0, None] * modes[..., 0, :]
+    axis = config.turn[..., 0]
+    twist = law.trapeze[..., None, None, None] * config.curvature[..., 0, None] * modes[..., 0, :]
     lever = cross_matrix(forces)
-    carried = (found.soft @ lever - cross_matrix(found.rate)) @ turned - axis[..., None] * twist[..., None, :]
+    carried = (config.soft @ lever - cross_matrix(config.rate)) @ turned - axis[..., None] * twist[..., None, :]
     reach = np.sum(weights * carried, axis=-3)
-    bending = _local(found.turn, moments)
-    bending[..., 0] -= law.trapeze[..., None, None] * found.tension * found.curvature[..., 0]
+    bending = _local(config.turn, moments)
+    bending[..., 0] -= law.trapeze[..., None, None] * config.tension * config.curvature[..., 0]
     geometric = _product(rates, weights * (cross_matrix(moments) @ turned)) - _product(turned, weights * (lever @ carried))
     pulled = np.sum((cross(axis, forces)[..., None] * turned), axis=-2)
     narrow = modes[..., 0, :]
-    tension = law.trapeze[..., None, None, None] * found.tension[..., None] * narrow
+    tension = law.trapeze[..., None, None, None] * config.tension[..., None] * narrow
     geometric -= _product(narrow[..., None, :], weights * tension[..., None, :]) + _product(
         twist[..., None, :], weights * pulled[..., None, :]
     )
-    gradient, hessian = _elastic(law, strain, found)
+    gradient, hessian = _elastic(law, strain, config)
     gradient[..., :count] -= _project(modes, rule.weights[:, None] * bending)
     hessian[..., :count, :count] -= geometric
     none = np.zeros((*reach.shape[:-1], hessian.shape[-1] - count))
     reach, turning = np.concatenate([reach, none], -1), np.concatenate([turning, none], -1)
-    whole = Tangent(gradient, hessian, reach, turning, np.sum(weights * found.soft, axis=-3))
-    if found.weight is None:
+    whole = Tangent(gradient, hessian, reach, turning, np.sum(weights * config.soft, axis=-3))
+    if config.weight is None:
         return whole
     left = (1.0 - rule.points)[:, None, None]
-    sways = [np.sum(weights * left**power * found.soft, axis=-3) for power in (1, 2)]
+    sways = [np.sum(weights * left**power * config.soft, axis=-3) for power in (1, 2)]
     hung = np.concatenate([np.sum(weights * left * carried, axis=-3), none], -1)
     return replace(whole, hung=hung, swayed=np.stack(sways, axis=-3))
 
 
-def mode_paths(law: FlexureLaw, found: Shape) -> tuple[Array, Array, Array]:
-    """How points move (..., b, n, 3, k) and turn by unit amplitudes of curvature, the start at rest and the end force as it is.
+def mode_paths(law: FlexureLaw, config: Shape) -> tuple[Array, Array, Array]:
+    """Compute displacement (..., b, n, 3, k) and rotation of points by unit curvature amplitudes, for a fixed start and end force.
 
-    And (..., b, 2, n, 3, 3) the integrals of R C_n R^T to each point: how it moves by force, and by weight (docs/nonlinear.md, 25).
+    Also returns the integrals (..., b, 2, n, 3, 3) of R C_n R^T to each point: displacement per force and per weight (docs/nonlinear.md,
+    25).
     """
-    rule, modes = found.rule, law.modes[..., None, :, :, :]
-    forces = _forces(rule, found.force, found.weight)
-    rates = found.turn @ modes
+    rule, modes = config.rule, law.modes[..., None, :, :, :]
+    forces = _forces(rule, config.force, config.weight)
+    rates = config.turn @ modes
     turned = _running(rule, rates)
-    twist = law.trapeze[..., None, None, None] * found.curvature[..., 0, None] * modes[..., 0, :]
-    carried = (found.soft @ cross_matrix(forces) - cross_matrix(found.rate)) @ turned - found.turn[..., 0, None] * twist[..., None, :]
+    twist = law.trapeze[..., None, None, None] * config.curvature[..., 0, None] * modes[..., 0, :]
+    carried = (config.soft @ cross_matrix(forces) - cross_matrix(config.rate)) @ turned - config.turn[..., 0, None] * twist[..., None, :]
     left = (1.0 - rule.points)[:, None, None]
-    soft = np.stack([_running(rule, found.soft), _running(rule, left * found.soft)], axis=-4)
+    soft = np.stack([_running(rule, config.soft), _running(rule, left * config.soft)], axis=-4)
     return _running(rule, carried), turned, soft
 
 
@@ -136,7 +141,7 @@ def _running(rule: Rule, values: Array) -> Array:
 
 
 def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
-    """The matrix (..., b, e, e) and right side (..., b, e) of the plate's fields that go with curvatures (docs/nonlinear.md, 13)."""
+    """Build the matrix (..., b, e, e) and right side (..., b, e) of the plate fields at given curvatures (docs/nonlinear.md, 13)."""
     weights, count = gauss(law.modes.shape[-3]).weights[:, None], law.modes.shape[-1]
     curvature = _apply(law.modes, strain[..., :count])
     twist, bend = curvature[..., :1], curvature[..., 2:]
@@ -147,15 +152,15 @@ def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
     return matrix, right - strain[..., :count] @ law.form[..., :count, count:]
 
 
-def energy(law: FlexureLaw, strain: Array, found: Shape) -> Array:
-    """Strain energy (..., b) over E I / L, that of stretch and shear by the end force included, counted from straight."""
+def energy(law: FlexureLaw, strain: Array, config: Shape) -> Array:
+    """Compute the strain energy (..., b) over E I / L from the straight state, including stretch and shear by the end force."""
     quadratic = np.sum(strain * (0.5 * strain @ law.form - law.rest[..., None, :]), axis=-1)
-    gauss_two, gauss_four = _gaussian(found)
+    gauss_two, gauss_four = _gaussian(config)
     stretch = law.stretch[..., None, None, :]
     density = stretch[..., 0] * gauss_two * gauss_two + stretch[..., 1] * gauss_four * gauss_four
-    forces = _forces(found.rule, found.force, found.weight)
-    density = density + np.sum(forces * (found.soft @ forces[..., None])[..., 0], axis=-1)
-    return quadratic + 0.5 * density @ found.rule.weights
+    forces = _forces(config.rule, config.force, config.weight)
+    density = density + np.sum(forces * (config.soft @ forces[..., None])[..., 0], axis=-1)
+    return quadratic + 0.5 * density @ config.rule.weights
 
 
 def _apply(table: Array, amplitudes: Array) -> Array:
@@ -175,17 +180,17 @@ def _turns(rule: Rule, inner: Array) -> tuple[Array, Array]:
 
 
 def _forces(rule: Rule, force: Array, weight: Array | None) -> Array:
-    """The force (..., b, n, 3) that the flexure beyond each point exerts: the end's, and its weight (docs/nonlinear.md, 16)."""
+    """The force (..., b, n, 3) of the flexure beyond each point: end force and weight (docs/nonlinear.md, 16)."""
     if weight is None:
         return np.broadcast_to(force[..., None, :], (*force.shape[:-1], rule.size, 3))
     return force[..., None, :] + (1.0 - rule.points)[:, None] * weight[..., None, :]
 
 
-def _lever(found: Shape, forces: Array) -> Array:
+def _lever(config: Shape, forces: Array) -> Array:
     """Integral from each point to the end of r' x f (..., b, n, 3)."""
-    if found.weight is None:
-        return cross(found.end[..., None, :] - found.place, forces)
-    return (found.rule.weights - found.rule.running) @ cross(found.rate, forces)
+    if config.weight is None:
+        return cross(config.end[..., None, :] - config.place, forces)
+    return (config.rule.weights - config.rule.running) @ cross(config.rate, forces)
 
 
 def _local(turn: Array, vectors: Array) -> Array:
@@ -206,38 +211,38 @@ def _project(table: Array, values: Array) -> Array:
     return values.reshape(*values.shape[:-2], -1) @ rows
 
 
-def _gaussian(found: Shape) -> tuple[Array, Array]:
+def _gaussian(config: Shape) -> tuple[Array, Array]:
     """Gaussian curvature (..., b, n) in the shapes of P2 and P4 (docs/nonlinear.md, 13), without signs."""
-    twist, bend = found.curvature[..., 0], found.curvature[..., 2]
-    two, four = _plate(found)
+    twist, bend = config.curvature[..., 0], config.curvature[..., 2]
+    two, four = _plate(config)
     return twist * twist - bend * two, bend * four
 
 
-def _plate(found: Shape) -> tuple[Array, Array]:
-    return found.plate[..., 0], found.plate[..., 1]
+def _plate(config: Shape) -> tuple[Array, Array]:
+    return config.plate[..., 0], config.plate[..., 1]
 
 
-def _elastic(law: FlexureLaw, strain: Array, found: Shape) -> tuple[Array, Array]:
+def _elastic(law: FlexureLaw, strain: Array, config: Shape) -> tuple[Array, Array]:
     """First and second derivatives of the strain energy without stretch by forces (docs/nonlinear.md, 13)."""
     gradient = strain @ law.form - law.rest[..., None, :]
     hessian = np.broadcast_to(law.form[..., None, :, :], (*gradient.shape, gradient.shape[-1])).copy()
     if not np.any(law.stretch):
         return gradient, hessian
-    rows, first, second = _stretching(law, found)
-    weights = found.rule.weights
+    rows, first, second = _stretching(law, config)
+    weights = config.rule.weights
     gradient = gradient + _project(rows, weights[:, None] * first)
     hessian = hessian + _product(rows, weights[:, None, None] * (second @ rows))
     return gradient, hessian
 
 
-def _stretching(law: FlexureLaw, found: Shape) -> tuple[Array, Array, Array]:
-    """What stretches: rows (..., 1, n, 4, q) of k_x, k_z, a2 and a4, and its energy's derivatives by them (..., b, n, 4), (..., 4, 4)."""
+def _stretching(law: FlexureLaw, config: Shape) -> tuple[Array, Array, Array]:
+    """Stretching rows (..., 1, n, 4, q) of k_x, k_z, a2 and a4, and derivatives (..., b, n, 4), (..., 4, 4) of its energy by them."""
     count, fields = law.modes.shape[-1], law.plate.shape[-1]
     rows = np.zeros((*law.modes.shape[:-2], 4, count + fields))
     rows[..., 0, :count], rows[..., 1, :count] = law.modes[..., 0, :], law.modes[..., 2, :]
     rows[..., 2:, count:] = law.plate
-    twist, bend = found.curvature[..., 0], found.curvature[..., 2]
-    two, four = _plate(found)
+    twist, bend = config.curvature[..., 0], config.curvature[..., 2]
+    two, four = _plate(config)
     stiff_two, stiff_four = law.stretch[..., None, None, 0], law.stretch[..., None, None, 1]
     curve = stiff_two * (twist * twist - bend * two)
     first = np.stack(

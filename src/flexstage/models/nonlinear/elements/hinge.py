@@ -1,9 +1,12 @@
-"""Links known by their 6x6 about a centre, at large displacements: springs, stacks, given matrices, joints (docs/nonlinear.md, 15).
+"""Links with a 6x6 about a centre, at large displacements: springs, stacks, specified matrices, joints (docs/nonlinear.md, 15).
 
-Both bodies are extended to the centre, to frames a and b. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the frame
-half-way, R_m = R_a exp(psi / 2): the same for exchanged ends. A strut (a spring with a length L) turns about both ends: its d_x is
-|x_b - x_a + (R_a + R_b) e_1 L / 2| - L, so that the force it carries acts along the line of its ends. A part with a drawn length also
-shortens by its own bending: 1/2 e^T G e is added to e = (d, psi) (`beams.geometric.foreshortening`).
+Both bodies are extended to the centre, to frames a and b. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the half-way
+frame R_m = R_a exp(psi / 2): equal for exchanged ends.
+
+A strut (a spring with a length L) turns about both ends: its d_x is |x_b - x_a + (R_a + R_b) e_1 L / 2| - L, so that its force acts along
+the line of its ends.
+
+A part with a length also shortens by its own bending: 1/2 e^T G e is added to e = (d, psi) (`beams.geometric.foreshortening`).
 """
 
 from __future__ import annotations
@@ -21,12 +24,16 @@ _STEP = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Hinges:
-    """Links about centres: bodies by number, the link's axes `turn` (l, 3, 3) as drawn, arms (l, 3) from the bodies' references.
+    """Links about centres: bodies by number, nominal link axes `turn` (l, 3, 3), arms (l, 3) from the body references.
 
-    `stiffness` (l, 6, 6); per input the free deformation `stroke` and the wrench `thrust` on the second body, both (l, 6, m); `push` (l, 6)
-    is the wrench on it as drawn; `strut` (l,) the length [m] between the ends that a strut turns about, zero of a link about its centre;
-    `bow` (l, 6, 6, 6) is G. `locked` (c, 2) are pairs of link and freedom without any deformation. Where designs differ from case to case,
-    all but `first`, `second` and `locked` have an axis of cases, (l, b, ...).
+    - `stiffness` (l, 6, 6).
+    - `stroke`, `thrust` (l, 6, m): free deformation and wrench on the second body per input.
+    - `push` (l, 6): nominal wrench on the second body.
+    - `strut` (l,): length [m] between the ends that a strut turns about, zero for a link about its centre.
+    - `bow` (l, 6, 6, 6): G.
+    - `locked` (c, 2): pairs of link and freedom without deformation.
+
+    If designs differ from case to case, all but `first`, `second` and `locked` have an axis of cases, (l, b, ...).
     """
 
     names: tuple[str, ...]
@@ -55,7 +62,7 @@ class Ends:
 
 
 def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
-    """Deformations (..., 6) and their derivatives (..., 6, 12) by the motions of the two bodies; poses (..., l, b, 3)."""
+    """Compute deformations (..., 6) and their derivatives (..., 6, 12) by the motions of the two bodies; poses (..., l, b, 3)."""
     turn = _by_case(hinges.turn, 2)
     frame, other = ends.first_turn @ turn, ends.second_turn @ turn
     arm = (ends.first_turn @ _by_case(hinges.arm_first, 1)[..., None])[..., 0]
@@ -98,13 +105,13 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """What the links resist with (..., l, b, 6): elastic, less what inputs (b, m) and the pushes exert, and `held` by locked freedoms."""
+    """Compute the internal wrenches (..., l, b, 6): elastic, less those of inputs (b, m) and pushes, plus `held` of locked freedoms."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 
 
 def imposed(hinges: Hinges, inputs: Array) -> Array:
-    """The free deformation (l, b, 6) that inputs (b, m) impose."""
+    """Compute the free deformation (l, b, 6) that inputs (b, m) impose."""
     return _by_input(hinges.stroke, inputs)
 
 
@@ -113,12 +120,12 @@ def _by_input(table: Array, inputs: Array) -> Array:
 
 
 def _by_case(table: Array, axes: int) -> Array:
-    """A table of links (l, ...), each entry of so many axes, as one of links and cases (l, 1 or b, ...)."""
+    """Reshape a table of links (l, ...), with entries of so many axes, to links and cases (l, 1 or b, ...)."""
     return table if table.ndim == axes + 2 else table[:, None]
 
 
 def stiffen(hinges: Hinges, ends: Ends, inputs: Array, pushing: Array, held: Array) -> tuple[Array, Array, Array, Array]:
-    """Residual (l, b, 12), its derivative (l, b, 12, 12) by complex steps, deformations and their derivatives."""
+    """Compute residual (l, b, 12), its derivative (l, b, 12, 12) by complex steps, deformations and their derivatives."""
     deformation, rows = deform(hinges, ends)
     residual = _work(rows, exerted(hinges, deformation, inputs, pushing, held))
     stepped, stepped_rows = deform(hinges, _nudge(ends))

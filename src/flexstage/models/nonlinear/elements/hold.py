@@ -1,4 +1,4 @@
-"""Coordinates of bodies that are held at a value: what a drive does, and the reaction that it finds."""
+"""Fixed (constrained) coordinates of bodies, and their reactions."""
 
 from __future__ import annotations
 
@@ -15,10 +15,12 @@ _STEP = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Hold:
-    """Held coordinates: of bodies by number (h,), at drawn arms (h, 3), `component` (h,) 0 to 5, at `value` (b, h) [m, rad].
+    """Fixed coordinates: of bodies by number (h,), at nominal arms (h, 3), `component` (h,) 0 to 5, at `value` (b, h) [m, rad].
 
-    A translation is that of the point, a rotation a component of the rotation vector log R; its reaction is the moment T^-T e.
-    `origin` (h, 3) is where the points are drawn. Where designs differ from case to case, arms and origins are (b, h, 3).
+    A translation is the displacement of the point, a rotation a component of the rotation vector log R; its reaction is the moment T^-T e.
+    `origin` (h, 3) are the nominal points.
+
+    If designs differ from case to case, arms and origins are (b, h, 3).
     """
 
     body: Array
@@ -28,24 +30,24 @@ class Hold:
     value: Array
 
     def of(self, cases: Array) -> Hold:
-        """That of some cases."""
+        """Select cases."""
         return Hold(self.body, self.arm, self.component, self.origin, self.value[cases])
 
 
 def nothing(cases: int) -> Hold:
-    """Nothing held."""
+    """Return an empty set of fixed coordinates."""
     none = np.zeros(0, dtype=int)
     return Hold(none, np.zeros((0, 3)), none, np.zeros((0, 3)), np.zeros((cases, 0)))
 
 
 def values(hold: Hold, place: int, pose: Pose) -> Array:
-    """How far the held coordinate has moved (b,)."""
+    """Compute the value (b,) of a fixed coordinate at a pose."""
     body = hold.body[place]
     return _coordinate(hold, place, pose.position[:, body], pose.turn[:, body])[0]
 
 
 def gradients(hold: Hold, place: int, pose: Pose) -> tuple[Array, Array, Array]:
-    """Value (b,) of a held coordinate, its gradient (b, 6) by the body's motion and the derivative (b, 6, 6) of that, by complex steps."""
+    """Compute value (b,), gradient (b, 6) by the body motion and second derivative (b, 6, 6) of a fixed coordinate, by complex steps."""
     position, turn = pose.position[:, hold.body[place]], pose.turn[:, hold.body[place]]
     value, along = _coordinate(hold, place, position, turn)
     step = 1j * _STEP * np.eye(6)[:, None]

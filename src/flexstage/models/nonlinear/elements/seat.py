@@ -1,4 +1,4 @@
-"""A seat between the ground and some links of a stage: a body that can be held elsewhere than drawn, so that what does not fit bends."""
+"""Seat between the ground and some links of a stage: a body with imposed displacements, for assembly errors."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _Links = TypeVar("_Links", Flexures, Hinges)
 
 
 def seat(model: Nonlinear, links: Collection[str], place: Array) -> Nonlinear:
-    """The model with a body `seat`, its reference at `place` (3,), to which `links` join instead of to the ground.
+    """Build the model with a body `seat`, its reference at `place` (3,), that connects `links` instead of the ground.
 
-    It is free: hold its six coordinates. Raises `DesignError` where none of the links joins the ground.
+    The seat is free: fix its six coordinates. Raises `DesignError` if none of the links connects to the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -30,7 +30,7 @@ def seat(model: Nonlinear, links: Collection[str], place: Array) -> Nonlinear:
     ground = len(model.bodies)
     flexures, hinges = tuple(_moved(group, ground, links, place) for group in model.flexures), _moved(model.hinges, ground, links, place)
     if not any(np.any(np.concatenate([group.first, group.second]) == ground) for group in (*flexures, hinges)):
-        raise refuse(", ".join(links) or SEAT, "it does not join the ground", "Name a copy or a link that does")
+        raise refuse(", ".join(links) or SEAT, "not connected to the ground", "Use an instance or a link on the ground")
     return replace(
         model,
         bodies=(*model.bodies, SEAT),
@@ -43,12 +43,12 @@ def seat(model: Nonlinear, links: Collection[str], place: Array) -> Nonlinear:
 
 
 def _moved(group: _Links, ground: int, links: Collection[str], place: Array) -> _Links:
-    """Links whose ends on the ground are on the seat, if they are named, or on the ground behind it."""
+    """Links whose ground ends are on the seat if they are named, else on the ground behind it."""
     mine = np.array([name in links for name in group.names], dtype=bool)
-    found: dict[str, Array] = {}
+    links_on_seat: dict[str, Array] = {}
     for end, arm in (("first", "arm_first"), ("second", "arm_second")):
         bodies = getattr(group, end)
         seated = mine & (bodies == ground)
-        found[end] = np.where((bodies == ground) & ~seated, ground + 1, bodies)
-        found[arm] = getattr(group, arm) - seated[:, None] * place
-    return replace(group, **found)
+        links_on_seat[end] = np.where((bodies == ground) & ~seated, ground + 1, bodies)
+        links_on_seat[arm] = getattr(group, arm) - seated[:, None] * place
+    return replace(group, **links_on_seat)

@@ -1,4 +1,4 @@
-"""How far links are deformed at a state: strain and stress of flexures, curving of their sections, and what their laws hold for.
+"""Deformation of links at a state: strain and stress of flexures, section curvature, and the range of their laws.
 
 See docs/nonlinear.md, 28 and 29.
 """
@@ -19,23 +19,23 @@ from flexstage.models.nonlinear.stage import Flexures
 from flexstage.parts.material import Material
 
 _STRAIN = 0.05
-"""Strain of a flexure beyond which no linear elastic law is physics."""
+"""Strain of a flexure beyond which no linear elastic law is valid."""
 _TURN, _SHIFT = 0.46, 0.30
-"""Rotation [rad] and displacement over the length at which a law of small motions is 10 % off: those of a cantilever under P L^2 = E I.
+"""Rotation [rad] and relative displacement at which a law of small motions is 10 % wrong, of a cantilever under P L^2 = E I.
 
-K. E. Bisshopp & D. C. Drucker, Quart. Appl. Math. 3 (1945) 272: 0.4613 rad and 0.3017, where linear theory has 0.5 and 0.3333.
+K. E. Bisshopp & D. C. Drucker, Quart. Appl. Math. 3 (1945) 272: 0.4613 rad and 0.3017; linear theory gives 0.5 and 0.3333.
 """
 _ABOUT_Z = np.array([0.0, 0.0, 1.0])
 _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
-"""Where across the width stress is looked at, over half of it."""
+"""Stress evaluation points across the width, over half of it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Of every flexure by name: the largest strain along it (..., l), and b^2 k / t of its strongest bending (..., l).
+    """Results of every flexure by name: the largest strain along it (..., l), and b^2 k / t of its strongest bending (..., l).
 
-    `stress` (..., l) is the largest stress of von Mises on its faces [Pa]; `limit` (l,) the least its material may have, NaN where none is
-    stated.
+    `stress` (..., l) is the largest von Mises stress on its faces [Pa]; `limit` (l,) the lowest yield limit of its material, NaN if
+    unknown.
     """
 
     names: tuple[str, ...]
@@ -46,17 +46,19 @@ class Strains:
 
 
 def strains(state: State) -> Strains:
-    """Strains at the ends and the points of every flexure, of its thinnest section where that varies.
+    """Compute strains at the ends and the points of every flexure, at its thinnest section.
 
-    |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the most each section can have at an edge of its surface. A leaf's section at a
-    clamped end has 1 / (1 - nu^2) times the stress of a beam of that strain. Stress is that of stretch, bending both ways, the curving of a
-    leaf's section and Saint-Venant's torsion; the warping of ends that twist, and the concentration at fillets, are left out.
+    |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. A leaf's section at a
+    clamped end has 1 / (1 - nu^2) times the stress of a beam of that strain.
+
+    Stress includes stretch, bending about both axes, section curvature of a leaf, and Saint-Venant torsion. Restrained warping and stress
+    concentration at fillets are neglected.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = strains(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}, weight=0.0))
-    >>> found.names[:2], bool(found.largest[0] > 1e-5)
+    >>> result = strains(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}, weight=0.0))
+    >>> result.names[:2], bool(result.largest[0] > 1e-5)
     (('left', 'right'), True)
     """
     names: list[str] = []
@@ -76,19 +78,21 @@ def strains(state: State) -> Strains:
         curved = np.max(np.abs(_bent(lies)[..., 2]), axis=-1) / law.length[:, None]
         curving += list(2.0 * law.half[:, None, 1] ** 2 / law.half[:, None, 0] * curved)
     known = np.where(state.converged, 1.0, np.nan)[..., None]
-    told = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
-    return Strains(tuple(names), *told, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
+    results = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
+    return Strains(tuple(names), *results, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
 
 
 def law_reserve(state: State) -> tuple[float, str]:
-    """How much of the range of its links' laws a state has left: 1 as drawn, 0 at its end; and what ends there.
+    """Return the remaining range of the link laws at a state, 1 if undeformed, 0 at the limit; and the reason.
 
-    Flexures end at a strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % off: where its ends have
-    turned by 0.46 rad, or are displaced by 0.3 of its length, of which no more is known than that it is within the extent of the stage; a
-    spring with a length ends at twice that. What has no stiffness has no range.
+    Flexures have a limit strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % wrong: at a relative
+    rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length.
+
+    If the length is unknown, the extent of the stage replaces it; a spring with a length ends at twice that displacement. Links without
+    stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges
-    used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure is strained by {_STRAIN:.0%} there")]
+    used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure has a strain of {_STRAIN:.0%} there")]
     moved = deform(hinges, hinge_ends(model, pose))[0] - imposed(hinges, state.loads.inputs)
     places = np.concatenate([model.reference[:-1], model.reference[hinges.first] + hinges.arm_first])
     shift = np.where(hinges.strut > 0.0, hinges.strut, _SHIFT * _diagonal(places))
@@ -98,17 +102,17 @@ def law_reserve(state: State) -> tuple[float, str]:
     for each in model.elements:
         motion = moved_ports(each, pose.position[:, each.bodies], pose.turn[:, each.bodies]).motion
         shares[each.name] = _share(motion.reshape(-1, 6), _SHIFT * _diagonal(each.place))
-    used += [(share, f"{name} is deformed beyond what its 6x6 holds for there") for name, share in shares.items()]
+    used += [(share, f"{name} is deformed beyond the range of its 6x6 there") for name, share in shares.items()]
     return min((1.0 - share, why) for share, why in used)
 
 
 def _diagonal(places: Array) -> float:
-    """The diagonal of the box around places (n, 3); infinite of a single one, which tells of no size."""
+    """Diagonal of the bounding box of points (n, 3); infinite for a single point, which has no size."""
     return float(np.linalg.norm(np.ptp(places, axis=0))) or np.inf
 
 
 def _share(motion: Array, shift: float) -> float:
-    """The largest displacement and rotation among motions (..., 6) over those at which a law of small motions ends."""
+    """The largest displacement and rotation among motions (..., 6) over the limits of a law of small motions."""
     return float(np.max(np.abs(motion) / np.repeat([shift, _TURN], 3)))
 
 
@@ -118,8 +122,8 @@ def _bent(lies: Shape) -> Array:
 
 
 def _materials(state: State, group: Flexures) -> list[Material]:
-    found = [state.model.assembly.links[name].material for name in group.names]
-    return [each for each in found if each is not None]
+    materials = [state.model.assembly.links[name].material for name in group.names]
+    return [each for each in materials if each is not None]
 
 
 def _limits(materials: list[Material]) -> Array:
@@ -131,14 +135,14 @@ def _column(values: list[Number]) -> Array:
 
 
 def _stress(group: Flexures, materials: list[Material], lies: Shape) -> Array:
-    """The largest stress of von Mises (l, b) at points and ends, five places across the width and both faces (docs/nonlinear.md, 29)."""
+    """The largest von Mises stress (l, b) at points and ends, five points across the width and both faces (docs/nonlinear.md, 29)."""
     law, flat = group.law, group.law.plate.shape[-1] > 0
     young, shear = _column([each.modulus for each in materials]), _column([each.shear for each in materials])
     poisson = _column([each.contraction if flat else 0.0 for each in materials])
     length, half, wide = (each[:, None, None, None, None] for each in (law.length, law.half[:, 0], law.half[:, 1]))
     bent = _bent(lies)[..., None, None, :] / length[..., None]
     natural, across_natural = (law.natural[:, None, None, None, None, place] / length for place in (0, 1))
-    ends = np.zeros((*lies.plate.shape[:-2], 2, 2))  # clamped: the section of a leaf cannot curve there
+    ends = np.zeros((*lies.plate.shape[:-2], 2, 2))  # clamped: no section curvature of a leaf here
     plate = np.concatenate([lies.plate, ends], axis=-2)[..., None, None, :] / length[..., None]
     pulled = lies.tension * law.compliance[:, None, :, 0]
     pulled = np.concatenate([pulled, pulled @ lies.rule.ends.T], axis=-1)[..., None, None]

@@ -1,4 +1,4 @@
-"""Equilibria along a load by arc length: past limits, and on from a point with a motion into another branch (docs/nonlinear.md, 27)."""
+"""Arc-length continuation of equilibria along a load: past limit points, and into a branch at a bifurcation (docs/nonlinear.md, 27)."""
 
 from __future__ import annotations
 
@@ -18,29 +18,34 @@ from flexstage.models.nonlinear.walk import walked
 from flexstage.spatial.rotation import logarithm
 
 _PROBE, _ONSET = 0.03, 1e-3
-"""Relative change of the factor, and that from zero, for its effect where more than inputs changes: weight along flexures is not linear."""
+"""Relative step of the factor, and step from zero, for its derivative if other terms than inputs change: flexure weight is nonlinear."""
 _STRIDE, _LEAST = 0.1, 1e-3
-"""Of the motion so far: the length of a step towards a whole load, and the least, quarter by quarter, that is tried."""
+"""First and smallest step length towards a whole load, over the motion so far; reduced by factors of four."""
 _FAR, _ROUGH = 1.0, 1e-3
-"""Times the length of a step that a correction may have, and the last one at most."""
+"""Maximum length of a correction and of the last one, over the step length."""
 _FINEST, _SHORTEST = 1e-7, 1e-16
-"""Length of a step, over the longest before it, below which a path is not followed; and that of any."""
+"""Step length over the previous maximum below which a path ends; and absolute minimum."""
 _SOFTER = 0.3
 """Slope over the steepest so far below which a path may turn."""
 _TURN, _ASIDE, _MISFIT, _UNEVEN = 0.35, 0.2, 0.25, 0.1
-"""Bounds of a step: rotation of the tangent [rad], distance of the point from the tangent over the length, error of the predicted slope
-and stiffness over their size or predicted change, and error of the factor's change by the trapezoidal rule."""
+"""Error bounds of a step.
+
+- Rotation of the tangent [rad].
+- Distance of the point from the tangent over the step length.
+- Error of the predicted slope and stiffness over their size or predicted change.
+- Trapezoidal error of the factor's change.
+"""
 _NOISE, _NONE = 1e-7, 1e-3
-"""Relative error of a factor, and slopes and stiffnesses over the largest, that count as rounding."""
+"""Rounding level of a factor (relative), and of slopes and stiffnesses over the largest."""
 _AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
-"""Share of these bounds that the next step aims at, bounds of its length over the last one's, and over that to where stiffness vanishes."""
+"""Target fraction of these bounds for the next step, limits of its length over the last one, and over the distance to zero stiffness."""
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """Loads and held coordinates of one case that change with a factor: those at zero, and what they gain per unit of the factor.
+    """Loads and fixed coordinates of one case that depend on a factor: values at zero, and gains per unit of the factor.
 
-    `options` decide when each equilibrium on it is found; stability counts in the rows `kept` of its system.
+    `options` are for each equilibrium solution; stability is evaluated in the rows `kept` of its system.
     """
 
     model: Nonlinear
@@ -52,18 +57,18 @@ class Course:
     kept: list[int]
 
     def at(self, factor: float) -> tuple[Loads, Hold]:
-        """Loads and held coordinates at a factor."""
+        """Return loads and fixed coordinates at a factor."""
         loads = Loads(*(getattr(self.loads, name) + factor * getattr(self.gain, name) for name in ("inputs", "gravity", "constant")))
         return loads, replace(self.hold, value=self.hold.value + factor * self.moved)
 
     @property
     def plain(self) -> bool:
-        """Whether inputs alone change, in which residuals are linear."""
+        """Whether only inputs change, in which residuals are linear."""
         return not (np.any(self.gain.gravity) or np.any(self.gain.constant) or np.any(self.moved))
 
     @property
     def scale(self) -> Array:
-        """What makes motions of bodies (n,) comparable, reactions left out."""
+        """Scale that makes body motions (n,) comparable, without reactions."""
         model = self.model
         others = np.zeros(len(model.hinges.locked) + len(self.hold.body))
         return np.concatenate([np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies)), others])
@@ -71,7 +76,7 @@ class Course:
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Stiffnesses at the start of a path, with which those along it are compared: of the stage, in units `scale` (n,), and of a flexure."""
+    """Reference stiffnesses at the start of a path: of the stage, in units `scale` (n,), and of a flexure."""
 
     scale: Array
     stage: float
@@ -80,12 +85,14 @@ class Reference:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """An equilibrium on a course: its `found` pose, `factor`, and the scaled `step` (n,) that led to it.
+    """An equilibrium on a load path: its `found` pose, `factor`, and the scaled `step` (n,) from the previous point.
 
-    `along` (n,) is the tangent of the path, of unit length in the scaled motion of bodies, `slope` the factor's change along it. `motions`
-    counts the independent motions that lower the potential there. `stiffness` is the product of the stage's lowest and that of the weakest
-    flexure between fixed ends, over those of the `reference`: where the second vanishes the first has a pole, and the product has none. It
-    is negative where motions are, and NaN without a reference. `steepest` is the largest slope so far.
+    - `along` (n,): unit tangent of the path in scaled body motion; `slope`: change of the factor along it; `steepest`: maximum slope so
+      far.
+    - `motions`: number of independent motions that decrease the potential.
+    - `stiffness`: product of the lowest stiffness of the stage and of the weakest flexure between fixed ends, over those of the
+      `reference`. The first has a pole where the second is zero; the product has none. It is negative for unstable states, and NaN without
+      a reference.
     """
 
     found: Found
@@ -101,9 +108,9 @@ class Point:
 
 
 def follow_course(course: Course, begin: Point, length: float, points: int) -> Iterator[Point]:
-    """Equilibria beyond `begin`, at most `length` apart in the motion of bodies, over the stage's size and in radians.
+    """Generate equilibria beyond `begin`, at most `length` apart in body motion, over the stage size and in radians.
 
-    Ends after `points` times the length, or where none is found at a small part of it.
+    Ends after `points` times the length, or if no equilibrium is found at a small fraction of it.
     """
     gone = 0.0
     for point in march(course, begin, length, longest=length):
@@ -114,10 +121,12 @@ def follow_course(course: Course, begin: Point, length: float, points: int) -> I
 
 
 def march(course: Course, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
-    """Equilibria beyond `begin`, by steps whose length follows the path's turning and the errors of its prediction.
+    """Generate equilibria beyond `begin` with step control by the path curvature and the prediction errors.
 
-    A step is repeated, shorter, where the tangent turns, the equilibrium is aside of it, or slope and lowest stiffness are not those which
-    the last two points predict. So no step passes two events. Ends where a step would be too small a part of the longest before it.
+    A step is repeated with a shorter length if the tangent turns, the equilibrium is off the tangent, or slope and lowest stiffness differ
+    from their prediction. So no step skips two events.
+
+    Ends if the step is too small a fraction of the longest previous one.
     """
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):
@@ -134,7 +143,7 @@ def _change(error: float) -> float:
 
 
 def misfit(scale: Array, before: Point | None, last: Point, after: Point) -> float:
-    """The largest error of a step over its bound; 1 is the most that is accepted."""
+    """Return the largest error of a step over its bound; a step is accepted up to 1."""
     length = float(np.linalg.norm(after.step))
     turned, aside = (float(np.linalg.norm(each - scale * last.along)) for each in (scale * after.along, after.step / length))
     rise, steep = after.factor - last.factor, length * max(abs(last.slope), abs(after.slope))
@@ -147,27 +156,27 @@ def misfit(scale: Array, before: Point | None, last: Point, after: Point) -> flo
 
 
 def _unforeseen(before: Point | None, last: Point, after: Point, name: str, size: float) -> float:
-    """The error of what the last two points predict of the next over the bound; NaN where a branch begins."""
-    there, here = getattr(last, name), getattr(after, name)
-    expected = there
+    """Error of the prediction from the last two points over the bound; NaN at the start of a branch."""
+    previous, current = getattr(last, name), getattr(after, name)
+    expected = previous
     if before is not None:
-        expected += (there - getattr(before, name)) * np.linalg.norm(after.step) / np.linalg.norm(last.step)
-    elif not there:
+        expected += (previous - getattr(before, name)) * np.linalg.norm(after.step) / np.linalg.norm(last.step)
+    elif not previous:
         return np.nan
-    return abs(here - expected) / (_MISFIT * max(abs(expected - there), abs(there), _NONE * size))
+    return abs(current - expected) / (_MISFIT * max(abs(expected - previous), abs(previous), _NONE * size))
 
 
 def _ahead(before: Point | None, last: Point) -> float:
-    """The length of a step to a little beyond where the lowest stiffness would vanish; infinite where it does not fall."""
+    """Step length to slightly beyond the predicted zero of the lowest stiffness; infinite if it does not decrease."""
     if before is None or last.motions or not last.stiffness < before.stiffness:
         return np.inf
     return _AHEAD * float(np.linalg.norm(last.step)) * last.stiffness / (before.stiffness - last.stiffness)
 
 
 def step_along(course: Course, last: Point, length: float) -> Point | None:
-    """The equilibrium a length further; `None` where it is not found. After E. Riks (Int. J. Solids Structures 15, 1979).
+    """Compute the equilibrium one step length further, or `None` without convergence (E. Riks, Int. J. Solids Structures 15, 1979).
 
-    Corrections keep the factor where the path is steep; else they are normal to the step so far, and the factor follows.
+    Corrections keep the factor if the path is steep; else they are normal to the step so far, and the factor follows.
     """
     scale, options, model = course.scale, course.options, course.model
     whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose
@@ -198,7 +207,7 @@ def step_along(course: Course, last: Point, length: float) -> Point | None:
 
 
 def load_rate(course: Course, pose: Pose, factor: float, system: System) -> Array:
-    """What loads and held coordinates gain (n,) with the factor at a pose."""
+    """Compute the derivative (n,) of loads and fixed coordinates by the factor at a pose."""
     if course.plain:
         return np.append(exerted_by(course.model, pose, course.gain)[0], np.zeros(len(course.hold.body)))
     probe = _PROBE * abs(factor) or _ONSET
@@ -214,26 +223,26 @@ def _one(pose: Pose, iterations: int, gap: float) -> Found:
 
 
 def first_point(course: Course, pose: Pose, factor: float) -> Point:
-    """A known equilibrium of one case to begin from, to where the factor grows."""
+    """Build the first point of a path from a known equilibrium, with an increasing factor."""
     return point_at(course, _one(pose, 0, 0.0), factor, step=0.0 * course.scale)
 
 
 def critical_point(course: Course, pose: Pose, factor: float, into: Array | None) -> Point:
-    """A limit point to begin from, or a bifurcation and the motion `into` (n,) of its branch.
+    """Build the first point at a limit point, or at a bifurcation with the motion `into` (n,) of its branch.
 
-    Just before a limit the path goes on to where the factor grows; just past it, where a motion is unstable, to where it falls.
+    Just before a limit point the factor increases along the path; just past it, with an unstable motion, it decreases.
     """
     point = first_point(course, pose, factor)
     along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(course.scale * into)
     return replace(point, along=along, slope=0.0, steepest=np.inf, stiffness=np.nan, reference=None)
 
 
-def point_at(course: Course, found: Found, factor: float, *, step: Array, start: Point | None = None) -> Point:
-    """The tangent of the path, the count of motions and the lowest stiffness at an equilibrium, seen from the point before it."""
+def point_at(course: Course, solution: Found, factor: float, *, step: Array, start: Point | None = None) -> Point:
+    """Compute tangent, number of unstable motions and lowest stiffness at an equilibrium, given the previous point."""
     model = course.model
     with np.errstate(all="ignore"):
-        system = assemble(model, found.pose, *course.at(factor))
-        rate = _solved(system, load_rate(course, found.pose, factor, system))
+        system = assemble(model, solution.pose, *course.at(factor))
+        rate = _solved(system, load_rate(course, solution.pose, factor, system))
         slope = np.copysign(1.0 / np.linalg.norm(course.scale * rate), 1.0 if start is None else step @ (course.scale * rate))
         along = slope * rate
     motions, stiffness = int(count_descents(model, system, course.kept)[0]), np.nan
@@ -244,25 +253,25 @@ def point_at(course: Course, found: Found, factor: float, *, step: Array, start:
         stiffness = (-1.0 if motions else 1.0) * (abs(whole / reference.stage * own / reference.flexure) if reference else 1.0)
         reference = reference or Reference(scale, whole, own)
     steepest = max(abs(float(slope)), 0.0 if start is None else start.steepest)
-    return Point(found, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
+    return Point(solution, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
 
 
-def rescue(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: SolverOptions) -> Found:
-    """What was found, with those cases that were found in part followed by arc length to their whole load, or to where it turns."""
-    partly = np.flatnonzero((found.status != Status.CONVERGED) & (found.reached > 0.0))
+def rescue(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, options: SolverOptions) -> Found:
+    """Continue the cases with a partial load by arc length to the whole load or to the limit point."""
+    partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])
-        after = _rescued(model, loads.of(one), hold.of(one), found.of(one), options)
-        told = (put(getattr(found, name), one, getattr(after, name)) for name in TOLD)
-        found = Found(found.pose.put(one, after.pose), *told)
-    return found
+        after = _rescued(model, loads.of(one), hold.of(one), solution.of(one), options)
+        fields = (put(getattr(solution, name), one, getattr(after, name)) for name in TOLD)
+        solution = Found(solution.pose.put(one, after.pose), *fields)
+    return solution
 
 
-def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: SolverOptions) -> Found:
-    """One case: its load is followed from the share that was reached."""
+def _rescued(model: Nonlinear, loads: Loads, hold: Hold, solution: Found, options: SolverOptions) -> Found:
+    """One case: the load is continued from the fraction `reached`."""
     rows = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
     course = Course(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, options, rows)
-    last = first_point(course, found.pose, float(found.reached[0]))
+    last = first_point(course, solution.pose, float(solution.reached[0]))
     stride = _STRIDE
     for _ in range(options.arcs):
         after = step_along(course, last, stride * _moved(course, last.found.pose))
@@ -272,17 +281,17 @@ def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, options: 
                 break
         elif after.factor >= 1.0:
             whole = search(model, after.found.pose, loads, hold, options)
-            return whole if whole.status[0] == Status.CONVERGED else found
+            return whole if whole.status[0] == Status.CONVERGED else solution
         elif after.factor < last.factor and not options.past:
             break
         else:
             last, stride = after, _STRIDE * (2.5 if options.past else 1.0)
-            found = replace(found, pose=after.found.pose, reached=np.maximum(found.reached, after.factor))
-    return found
+            solution = replace(solution, pose=after.found.pose, reached=np.maximum(solution.reached, after.factor))
+    return solution
 
 
 def _moved(course: Course, pose: Pose) -> float:
-    """How far bodies are from where they are drawn, over the stage's size and in radians."""
+    """Displacement of bodies from the nominal position, over the stage size and in radians."""
     model = course.model
     apart = (pose.position[0, :-1] - model.reference[:-1]) / model.size
     return float(np.linalg.norm(np.concatenate([apart, logarithm(pose.turn[0, :-1])]))) or 1.0

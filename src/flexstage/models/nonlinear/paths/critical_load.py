@@ -1,4 +1,4 @@
-"""Stability: how many ways a state would leave its equilibrium, and the load at which the first opens (docs/nonlinear.md, 22 to 24)."""
+"""Stability: number of unstable motions at a state, and the critical load (docs/nonlinear.md, 22 to 24)."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import STATED, WEIGHT, Loads, SolverOptions, Status
 
 _MOST = 1e12
-"""The largest factor."""
+"""Maximum factor."""
 _SEEN = 1e-6
-"""Work of the load on the motion, over their sizes, below which it does none."""
+"""Relative work of the load on the motion below which it is zero."""
 _EQUAL = 1e-3
-"""Relative difference of components of a shape that counts as none."""
+"""Relative difference of shape components that is zero."""
 
 
 class NothingGivesWayError(DesignError):
-    """The stage bears as much of a load as was looked at."""
+    """No critical load up to the maximum factor."""
 
 
 class Kind(Enum):
@@ -42,11 +42,12 @@ class Kind(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Critical:
-    """The `factor` on a load at which the stage gives way, the `shape` (n, 6) of its `bodies` doing so, and of which `kind` it is.
+    """Critical point: the `factor` on a load, the buckling mode `shape` (n, 6) of its `bodies`, and its `kind`.
 
-    The shape's largest component, translations over the stage's size, is positive; of equal ones the first.
-    `link` names the flexure that gives way by itself, its ends at rest; else it is empty. `state` is the last stable one. `bend` is the
-    factor at which the path has bent off before, an imperfect bifurcation; None where it has not.
+    The largest component of the shape, translations over the stage size, is positive; the first one of equal components.
+
+    `link` names a flexure that buckles between fixed ends, else it is empty. `state` is the last stable one. `bend` is the factor of an
+    earlier imperfect bifurcation, or `None`.
     """
 
     factor: float
@@ -59,10 +60,11 @@ class Critical:
 
 
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
-    """How many independent motions (...) lower the potential of each case: zero if it is stable. -1 where a case has no state.
+    """Return the number (...) of independent motions that decrease the potential of each case: 0 if stable, -1 without a state.
 
-    The negative eigenvalues of the stage's stiffness, and those of each flexure's own system beyond its six multipliers. Of what the state
-    holds, the coordinates `locked` stay held (absent: all); the others are released under the force that held them.
+    Negative eigenvalues of the stage stiffness, plus those of the own system of each flexure beyond its six multipliers.
+
+    Of the fixed coordinates, those in `locked` stay fixed (absent: all); the others are released under their reactions.
     """
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     count = count_descents(state.model, whole, kept_rows(state.model, state.held, state.held if locked is None else locked))
@@ -83,22 +85,26 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     most: float = _MOST,
     tolerance: float = 1e-9,
 ) -> Critical:
-    """Critical load: the factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) constant.
+    """Compute the critical load: the factor on `load` at which equilibrium becomes unstable, with all other loads constant.
 
-    Loads are named as in `equilibrium`, and so are coordinates in `hold`, whose values then grow; `weight` names the stage's own, which
-    then counts as a load alone if `weight` is zero, and `stated forces` those of the description with its preloads, likewise. Other
-    coordinates in `hold` stay at their values; those that are not `locked` too (absent: all are) count as free under the force that holds
-    them there.
+    The other loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can be part of
+    `load`: their values then grow. `weight` in `load` is the weight of the stage (as a load only if the argument `weight` is zero), and
+    `stated forces` are the forces and preloads of the description, likewise.
 
-    The path of equilibria is followed from no load, or from the whole load where the state under it is `known`, by arc length with steps
-    that resolve its turning and the change of its lowest stiffness. The first limit point or bifurcation is where that stiffness is zero,
-    to `tolerance`. Raises `DesignError` for a load that is zero and for a stage that is unstable where that begins,
-    `NothingGivesWayError` where no stiffness vanishes up to `most` times the load, and `LowerBoundError` where the path is followed to
-    less than that: to the end of the range of a law (`strain.law_reserve`), or to where no further equilibrium is found.
+    Other coordinates in `hold` keep their values; those that are not `locked` (absent: all are) count as free under their reactions.
+
+    The path starts without load, or from the `known` state under the whole load. Arc-length steps resolve its curvature and the change of
+    its lowest stiffness. The result is the first limit point or bifurcation, where that stiffness is zero to `tolerance`.
+
+    It raises:
+
+    - `DesignError` for a zero load, and for a stage that is unstable at the start;
+    - `NothingGivesWayError` if no stiffness is zero up to `most` times the load;
+    - `LowerBoundError` if the path ends earlier: at the end of the range of a law (`strain.law_reserve`), or without a further equilibrium.
     """
     if not any(load.values()):
-        raise refuse("load", "the load whose critical factor is asked for is zero", "Name a force or moment and its size")
-    require(Finding(name, "no value holds it", suggest_nearest(name, hold or {})) for name in locked or () if name not in (hold or {}))
+        raise refuse("load", "the load is zero", "Name a force or moment and its size")
+    require(Finding(name, "not a fixed coordinate", suggest_nearest(name, hold or {})) for name in locked or () if name not in (hold or {}))
     low = 0.0 if known is None else 1.0
     start = _at(model, load, low, rest=rest or {}, hold=hold or {}, shares=(weight, stated), start=known)
     require_equilibrium(start)
@@ -106,10 +112,10 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     begin = first_point(course, start.pose, low)
     if begin.motions:
         under = "with" if low else "without"
-        raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Look at its weight and its stated forces")
+        raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Check its weight and its specified forces")
     followed = follow_to_event(course, begin, most, tolerance, reserve=lambda point: law_reserve(state_at(course, point, ())))
     if followed.event is None or followed.factor > most:
-        what = f"nothing gives way up to {most:g} times the load"
+        what = f"no critical point up to {most:g} times the load"
         raise NothingGivesWayError([Finding("load", what, "Name a larger load, or another one")])
     return _critical(course, followed, start.held)
 
@@ -124,7 +130,7 @@ def _at(
     shares: tuple[float, float],
     start: State | None,
 ) -> State:
-    """The equilibrium under a factor on a load, all else staying."""
+    """Equilibrium under a factor on a load, with all other loads constant."""
     held = {name: value + factor * load.get(name, 0.0) for name, value in hold.items()}
     scaled = {name: factor * value for name, value in load.items() if name not in hold}
     weight, stated = (share + scaled.pop(name, 0.0) for share, name in zip(shares, (WEIGHT, STATED), strict=True))
@@ -133,23 +139,23 @@ def _at(
 
 
 def require_continuation(start: State, end: State) -> None:
-    """Refuse a stable state that is not the continuation of another one as loads and held coordinates go from those to its own.
+    """Refuse a stable state that is not the continuation of another one, as loads and fixed coordinates change in proportion.
 
-    Raises `DesignError` at the load of the first limit point or bifurcation on the way, where the path ends, and where it leads to another
-    equilibrium. A state that is not stable, or whose path begins at one that is not, is let through.
+    Raises `DesignError` at the load of the first limit point or bifurcation on the path, at the end of the path, and if the path leads to
+    another equilibrium. An unstable state, or one whose path starts unstable, is accepted.
     """
     one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
-    found = continued(one, other)
-    if found.status[0] != Status.CONVERGED:
-        raise refuse("stage", why_without(int(found.status[0]), float(found.reached[0])), LESS)
-    if found.pose is not end.pose:
-        raise refuse("stage", "the equilibrium found under its loads is not the continuation of the unloaded stage", LESS)
+    continuation = continued(one, other)
+    if continuation.status[0] != Status.CONVERGED:
+        raise refuse("stage", why_without(int(continuation.status[0]), float(continuation.reached[0])), LESS)
+    if continuation.pose is not end.pose:
+        raise refuse("stage", "the equilibrium under its loads is not the continuation of the unloaded stage", LESS)
 
 
 def course_of(
     start: State, load: Mapping[str, float], factor: float, options: SolverOptions, *, locked: Sequence[str] | None = None
 ) -> Course:
-    """The course of a load that changes by a factor, from a state that has it so many times."""
+    """Build the load path of a load that is proportional to a factor, from a state at a given factor."""
     model = start.model
     rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
     gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], load.get(STATED, 0.0) * np.ones(1))
@@ -160,12 +166,12 @@ def course_of(
 
 
 def state_at(course: Course, point: Point, held: tuple[str, ...]) -> State:
-    """The state at a point of a course."""
+    """Build the state at a point of a load path."""
     return state(course.model, *course.at(point.factor), point.found, ((), held))
 
 
 def _critical(course: Course, followed: Followed, held: tuple[str, ...]) -> Critical:
-    """The critical point where a stiffness vanishes: a limit point where the load works on the motion of that stiffness."""
+    """The critical point at a zero stiffness: a limit point if the load does work on its motion."""
     model, event = course.model, followed.event
     assert event is not None  # noqa: S101
     assert event.reference is not None  # noqa: S101
@@ -185,7 +191,7 @@ def _critical(course: Course, followed: Followed, held: tuple[str, ...]) -> Crit
 
 
 def _force_rate(course: Course, event: Point) -> Array:
-    """What the bodies gain of force (n,) with the factor, held coordinates that move with it being followed by their bodies alone."""
+    """Derivative (n,) of body forces by the factor; prescribed coordinates that change with it move only their bodies."""
     count, matrix = course.model.freedoms, event.system.matrix[0]
     rate = load_rate(course, event.found.pose, event.factor, event.system)
     if not np.any(course.moved):

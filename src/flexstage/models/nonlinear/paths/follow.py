@@ -1,4 +1,4 @@
-"""Following a path of equilibria to its first critical point, or to loads whose equilibrium is known (docs/nonlinear.md, 25)."""
+"""Path following to the first critical point, or to loads with a known equilibrium (docs/nonlinear.md, 25)."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.spatial.rotation import logarithm
 
 FIRST = 1e-4
-"""The first step in the motion of bodies, over the stage's size and in radians."""
+"""First step in body motion, over the stage size and in radians."""
 NEAR = SolverOptions(halvings=0, iterations=15, arcs=0)
-"""Each state starts from one next to it."""
+"""Solver options for states that start from an adjacent one."""
 _POINTS, _JUMPS = 400, 8
-"""Equilibria along a path, and steps over to another one, before it is given up."""
+"""Maximum number of equilibria along a path, and of steps onto another path."""
 VANISHED = 1e-5
-"""Stiffness over that at the start which counts as zero; what is left where a step changes to another path is more."""
+"""Stiffness over that at the start which counts as zero; a step onto another path leaves a larger value."""
 _SAME = 1e-6
-"""Distance of two poses, over the stage's size and in radians, that are the same."""
+"""Distance of two equal poses, over the stage size and in radians."""
 _FLAT, _SOON, _WELL = 0.01, 1.01, 1.25
-"""Slope over the steepest so far below which a path bends off; times the factor there, how far it is followed at least and at most."""
+"""Slope over the steepest so far at which a path bends off; minimum and maximum factor, over the one there, of its continuation."""
 _BESIDE = (1.0, 1.0 - 1e-8, 1.0 - 1e-7, 1.0 - 1e-6, 1.0 - 1e-5)
-"""Shares of a step at which an equilibrium is looked for where it is singular."""
+"""Fractions of a step to try for an equilibrium near a singular one."""
 _NEXT, _ROUND = 1e-9, 1e-7
-"""Of the last step: the last stable state before a critical one; of the factor, how far that may be from there by rounding of the step."""
+"""Last stable state before a critical one, over the last step; permitted rounding of the factor between them."""
 
 Reserve = Callable[[Point], tuple[float, str]]
-"""How much of the range of its laws a point has left, negative beyond it, and what is first beyond."""
+"""Function that returns the remaining law range at a point, negative beyond it, and the first law beyond its range."""
 
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """A path from its start: its last stable point, its first critical one, if there is one, the factors of its bend and of its end."""
+    """A path from its start: last stable point, first critical point if any, and factors of its bend and of its end."""
 
     last: Point
     event: Point | None
@@ -51,23 +51,23 @@ class Followed:
 def follow_to_event(
     course: Course, begin: Point, most: float, tolerance: float, *, length: float = FIRST, reserve: Reserve | None = None
 ) -> Followed:
-    """Follow a path to the first point where its stiffness vanishes, or to the factor `most`; its first step has a `length`.
+    """Follow a path to the first zero of its stiffness, or to the factor `most`; its first step has a `length`.
 
-    Raises `LowerBoundError` where the path is not followed so far: where no equilibrium is found, and if it has a `reserve`, where that
-    ends and well beyond an imperfect bifurcation.
+    Raises `LowerBoundError` if the path ends earlier: without an equilibrium or, with a `reserve`, at its zero and well beyond an imperfect
+    bifurcation.
     """
     last, bent = begin, None
     for _ in range(_JUMPS):
         for point in itertools.islice(march(course, last, length), _POINTS):
             length = 0.1 * float(np.linalg.norm(point.step))
             if point.motions:
-                found = _first_event(course, last, point, bent, tolerance)
-                if found is None:
-                    break  # the step went over to another path
-                _require_lawful(course, found.event or point, last, bent, reserve)
-                if found.factor <= most:
-                    return found
-                return replace(found, last=_zero(course, last, found.event or point, lambda each: each.factor - most, 1e-6) or last)
+                event = _first_event(course, last, point, bent, tolerance)
+                if event is None:
+                    break  # the step changed to another path
+                _require_lawful(course, event.event or point, last, bent, reserve)
+                if event.factor <= most:
+                    return event
+                return replace(event, last=_zero(course, last, event.event or point, lambda each: each.factor - most, 1e-6) or last)
             _require_lawful(course, point, last, bent, reserve)
             if bent is None and _excess(point) < 0.0:
                 bent = _zero(course, last, point, _excess, 1e-4) or point
@@ -78,13 +78,13 @@ def follow_to_event(
                 return Followed(last, None, _bend(bent, last), last.factor)
         else:
             break
-    if abs(last.stiffness) < VANISHED:  # Newton's method has no equilibrium where a flexure's own stiffness is zero
+    if abs(last.stiffness) < VANISHED:  # Newton's method has no solution at a zero own stiffness of a flexure
         return Followed(last, last, _bend(bent, last), last.factor)
-    raise _not_followed(last, "no equilibrium is found next to the last one", None if reserve is None else bent)
+    raise _not_followed(last, "no equilibrium next to the last one", None if reserve is None else bent)
 
 
 def _first_event(course: Course, last: Point, point: Point, bent: Point | None, tolerance: float) -> Followed | None:
-    """The critical point between a stable point and one that is not; `None` where no stiffness vanishes between them."""
+    """The critical point between a stable and an unstable point; `None` if no stiffness is zero between them."""
     event = _zero(course, last, point, _stiffness, tolerance)
     if event is None or abs(event.stiffness) > VANISHED:
         return None
@@ -92,17 +92,19 @@ def _first_event(course: Course, last: Point, point: Point, bent: Point | None, 
     before = step_along(course, last, (1.0 - _NEXT) * length) if event.motions else None
     if before is None or before.motions or abs(before.factor - event.factor) > _ROUND * abs(event.factor):
         before = event
-    slope = float(np.nan_to_num(event.slope))  # singular to the bit, it has none, and no stiffness is left
+    slope = float(np.nan_to_num(event.slope))  # exactly singular: no residual stiffness
     factor = event.factor + slope * length * event.stiffness / (last.stiffness - event.stiffness)
     return Followed(before, event, _bend(bent, event), factor)
 
 
 def continued(start: Task, end: Task) -> Found:
-    """The equilibrium (of one case) that continues that of `start` as loads and held coordinates go in proportion to those of `end`.
+    """Compute the equilibrium (of one case) that continues `start` as loads and fixed coordinates grow in proportion to `end`.
 
-    An equilibrium of `end` that is next to the start, or the path of which begins at one that is not stable, is returned as it is. So is
-    one that is not stable where the path has no stable one, or bends off before. Else `status` is `CRITICAL` where the path has a limit
-    point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the share `reached`.
+    An equilibrium `end` is returned unchanged if it is next to the start, or if its path starts unstable. So is an unstable one whose path
+    bends off earlier.
+
+    Else `status` is `CRITICAL` for a path with a limit point or a bifurcation, and `NOT_FOLLOWED` for a path that ends, each at the
+    fraction `reached`.
     """
     model, hold = end.model, end.hold
     whole = Found(end.start, np.array([Status.CONVERGED]), np.zeros(1, int), np.zeros(1), np.ones(1))
@@ -119,7 +121,7 @@ def continued(start: Task, end: Task) -> Found:
         return whole
 
     def lost(status: Status, reached: float) -> Found:
-        return whole if after.motions else replace(whole, status=np.array([status]), reached=np.array([reached]))
+        return replace(whole, status=np.array([status]), reached=np.array([reached]))
 
     try:
         followed = follow_to_event(course, begin, 1.0, 1e-6, length=1.0 / begin.slope)
@@ -129,18 +131,18 @@ def continued(start: Task, end: Task) -> Found:
         return lost(Status.CRITICAL, followed.factor)
     if after.motions and followed.bend:
         return whole
-    found = search(model, followed.last.found.pose, end.loads, hold, USUAL)
-    return whole if found.status[0] == Status.CONVERGED and apart(model, found.pose, end.start) < _SAME else found
+    solution = search(model, followed.last.found.pose, end.loads, hold, USUAL)
+    return whole if solution.status[0] == Status.CONVERGED and apart(model, solution.pose, end.start) < _SAME else solution
 
 
 def apart(model: Nonlinear, one: Pose, other: Pose) -> float:
-    """How far bodies are from where another pose has them, over the stage's size and in radians."""
+    """Return the distance of bodies from another pose, over the stage size and in radians."""
     moved = np.max(np.abs(one.position - other.position)) / model.size
     return float(max(moved, np.max(np.abs(one.turn - other.turn))))
 
 
 def between(one: Pose, other: Pose) -> Array:
-    """The motion of bodies (n,) from one pose to another, reactions left out."""
+    """Return the body motion (n,) from one pose to another, without reactions."""
     moved = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
     return np.append(moved[0, :-1], np.zeros(other.held.shape[1]))
 
@@ -150,12 +152,12 @@ def _stiffness(point: Point) -> float:
 
 
 def _excess(point: Point) -> float:
-    """How far the slope is above that of a path that has bent off."""
+    """Excess of the slope over that of a path that bends off."""
     return point.slope / point.steepest - _FLAT
 
 
 def _require_lawful(course: Course, point: Point, last: Point, bent: Point | None, reserve: Reserve | None) -> None:
-    """Refuse a point beyond the range of the laws, where that is."""
+    """Refuse a point beyond the range of the laws."""
     if reserve is None:
         return
     left, why = reserve(point)
@@ -164,33 +166,33 @@ def _require_lawful(course: Course, point: Point, last: Point, bent: Point | Non
 
 
 def _require_unbent(last: Point, bent: Point | None, most: float) -> None:
-    """Refuse what is well beyond a bend, and the end of a path that has bent off."""
+    """Refuse points well beyond a bend, and the end of a path that has bent off."""
     if bent is not None and (last.factor > _WELL * bent.factor or (last.factor >= most and _bend(bent, last) is not None)):
         raise _not_followed(last, "", bent)
 
 
 def _not_followed(last: Point, why: str, bent: Point | None) -> LowerBoundError:
-    """A path that ends without a critical point: stable up to its end, or to where it bends off."""
+    """Error of a path that ends without a critical point: stable up to its end, or up to its bend."""
     bend = _bend(bent, last)
     bound = last.factor if bend is None else bend
     reason = why if bend is None else f"it bends off there, an imperfect bifurcation, and moves {1.0 / _FLAT:g} times as far per load"
-    what = f"it is stable up to {bound:.6g} times the load, and not followed beyond: {reason}"
-    return LowerBoundError([Finding("load", what, "Follow the load with fs.continuation, or name another one")], bound)
+    what = f"stable up to {bound:.6g} times the load, and not followed beyond: {reason}"
+    return LowerBoundError([Finding("load", what, "Follow the load with fs.continuation, or use another one")], bound)
 
 
 def _bend(bent: Point | None, last: Point) -> float | None:
-    """The factor at which a path has bent off, if it has not ended soon after."""
+    """The factor at which a path has bent off, unless it ends soon after."""
     return None if bent is None or last.factor < _SOON * bent.factor else bent.factor
 
 
 def _zero(course: Course, last: Point, after: Point, measure: Callable[[Point], float], tolerance: float) -> Point | None:
-    """The point between two at which a measure of points changes its sign; `None` where one between them is not found."""
+    """The point between two at which a measure of points changes sign; `None` without an equilibrium between them."""
     length = float(np.linalg.norm(after.step))
 
     def at(part: float) -> Point:
         if part in (0.0, length):
             return after if part else last
-        for share in _BESIDE:  # where stiffness vanishes Newton's method has none
+        for share in _BESIDE:  # Newton's method has no solution at zero stiffness
             point = step_along(course, last, share * part)
             if point is not None:
                 return point

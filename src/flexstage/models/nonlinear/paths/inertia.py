@@ -1,4 +1,4 @@
-"""Inertia of the tangent stiffness: negative eigenvalues of the stage and of every flexure's own system (docs/nonlinear.md, 22)."""
+"""Inertia of the tangent stiffness: negative eigenvalues of the stage and of the own system of every flexure (docs/nonlinear.md, 22)."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from flexstage.models.nonlinear.summed import nearest_descent, negative_pivots
 
 
 def kept_rows(model: Nonlinear, held: Sequence[str], locked: Sequence[str]) -> list[int]:
-    """The rows of a system without those of held coordinates that are not locked."""
+    """Return the rows of a system without fixed coordinates that are not locked."""
     first = model.freedoms + len(model.hinges.locked)
     return [*range(first), *(first + place for place, name in enumerate(held) if name in locked)]
 
 
 def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
-    """Independent motions (b,) that lower the potential: negative eigenvalues beyond those of constraints and multipliers."""
+    """Count the independent motions (b,) that decrease the potential: negative eigenvalues beyond those of constraints and multipliers."""
     count = _descents(whole, kept, model.freedoms) - (len(kept) - model.freedoms)
     for bent in whole.bent:
         count = count + np.sum(_negative(indefinite(bent.tangent)) - 6, axis=0)
@@ -30,9 +30,9 @@ def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
 
 
 def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Array) -> tuple[float, Array]:
-    """The lowest eigenvalue of the stiffness over `scale` (n,) on both sides, among motions that constraints allow, and its motion (n,).
+    """Compute the lowest eigenvalue of the stiffness over `scale` (n,) on both sides, among admissible motions, and its motion (n,).
 
-    1 and no motion where they allow none.
+    Without admissible motions: 1 and a zero motion.
     """
     freedoms = model.freedoms
     if not isinstance(whole.matrix, np.ndarray):
@@ -48,7 +48,7 @@ def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Ar
 
 
 def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
-    """The least of the flexures' own eigenvalues, scaled by rows, beyond their six multipliers, and the flexure; 1 without flexures."""
+    """Compute the lowest eigenvalue of the flexures, row-scaled, beyond their six multipliers, and the flexure; 1 without flexures."""
     weakest = [
         (float(least), name)
         for group, each in zip(model.flexures, whole.bent, strict=True)
@@ -58,22 +58,22 @@ def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
 
 
 def stiffness_scale(model: Nonlinear, whole: System) -> Array:
-    """The square roots (n,) of the stiffness's diagonal: motions in units that no unit of measurement changes."""
+    """Compute the square roots (n,) of the stiffness diagonal, which make motions independent of units of measurement."""
     diagonal = whole.matrix[0].diagonal()[: model.freedoms]
     size = np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
     typical = np.sqrt(np.max(diagonal / size**2, initial=0.0) or 1.0)
     return np.maximum(np.sqrt(np.maximum(diagonal, 0.0)), 1e-6 * typical * size)
 
 
-def indefinite(found: Tangent) -> Array:
-    """The symmetric form of a flexure's system: the rows of its end with reversed signs."""
-    matrix = system(found)
+def indefinite(tangent: Tangent) -> Array:
+    """Build the symmetric form of a flexure's system: the rows of its end with reversed signs."""
+    matrix = system(tangent)
     matrix[..., matrix.shape[-1] - 6 :, :] *= -1.0
     return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
 
 
 def _descents(whole: System, kept: list[int], freedoms: int) -> Array:
-    """Negative eigenvalues (b,) of the rows and columns kept; of sparse matrices by their pivots."""
+    """Negative eigenvalues (b,) of the kept rows and columns; of sparse matrices by their pivots."""
     if isinstance(whole.matrix, np.ndarray):
         return _negative(whole.matrix[:, kept][:, :, kept])
     known = [bool(np.isfinite(each.data).all()) for each in whole.matrix]
@@ -81,12 +81,12 @@ def _descents(whole: System, kept: list[int], freedoms: int) -> Array:
 
 
 def _negative(matrix: Array) -> Array:
-    """How many eigenvalues of symmetric matrices (..., n, n) are negative."""
+    """Number of negative eigenvalues of symmetric matrices (..., n, n)."""
     return np.sum(np.linalg.eigvalsh(_even(matrix)) < 0.0, axis=-1)
 
 
 def _even(matrix: Array) -> Array:
-    """Symmetric matrices (..., n, n) scaled by the largest of their rows."""
+    """Symmetric matrices (..., n, n) scaled by their largest row entries."""
     even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
     size = np.sqrt(np.maximum(np.max(np.abs(even), axis=-1), 1e-300))
     return np.nan_to_num(even / size[..., None] / size[..., None, :])

@@ -25,7 +25,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 @dataclass(frozen=True, eq=False)
 class Event:
-    """What happens between two points of a path: a `LIMIT`, where the load turns, or a `BIFURCATION`, where stability is lost or won."""
+    """Event between two points of a path: a `LIMIT` point of the load, or a `BIFURCATION`, where stability changes."""
 
     kind: Kind
     before: int
@@ -34,11 +34,12 @@ class Event:
 
 @dataclass(frozen=True, eq=False)
 class LoadPath:
-    """Load path, equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], the `state` of each.
+    """Load path, equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], and a `state` for each.
 
-    `motions` (k,) is how many ways each would leave its equilibrium (0: stable; -1: not found), what a held drive holds counted as held.
-    `locked` coordinates stay where they are along it. `turns` (k - 1,) are the extreme loads between its points, NaN where the load is
-    monotonic; None where values were given.
+    `motions` (k,) is the number of unstable motions (0: stable; -1: no equilibrium) with a fixed drive coordinate. `locked` coordinates
+    stay fixed along the path.
+
+    `turns` (k - 1,) are the extreme loads between its points, NaN if the load is monotonic; `None` if values were given.
     """
 
     drive: str
@@ -50,11 +51,11 @@ class LoadPath:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Limit points and bifurcations, in order, a bifurcation at the mean of the values on either side."""
+        """Limit points and bifurcations, in order; a bifurcation at the mean of its two adjacent values."""
         return tuple(itertools.chain.from_iterable(map(self._between, range(len(self.values) - 1))))
 
     def _between(self, place: int) -> Iterator[Event]:
-        """What happens between a point and the next: at a limit point one motion is gained or lost, more at a bifurcation."""
+        """Event between a point and the next: one motion changes at a limit point, more at a bifurcation."""
         top, motions = np.nan if self.turns is None else float(self.turns[place]), self.motions[place : place + 2]
         changes = 0 if min(motions) < 0 else abs(int(motions[1] - motions[0]))
         if np.isfinite(top):
@@ -74,57 +75,59 @@ def load_path(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Load path: equilibria as `drive` takes `values` (k,): a held coordinate (`platform.y`), or an actuator's stroke, force or a wrench.
+    """Compute the load path as `drive` takes `values` (k,): a fixed coordinate (`platform.y`), or an actuator's stroke, force or a wrench.
 
-    Coordinates in `hold` stay locked at their values. All values are tried at once from the drawn position; what fails starts again from
-    its nearest neighbour that was found. Stable states that do not continue the stage at rest along the drive have no numbers, as in
-    `equilibrium`. Raises `DesignError` for a drive that the stage does not have.
+    Coordinates in `hold` stay locked at their values. All values start from the nominal position; failed ones start again from the nearest
+    converged one.
+
+    Stable states that do not continue the equilibrium along the drive are NaN, as in `equilibrium`. Raises `DesignError` for an unknown
+    drive.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = load_path(nonlinear(parallelogram()), "platform.x", np.linspace(-1e-4, 1e-4, 3), weight=0.0)
-    >>> found.state.reactions[:, 0].round(0).tolist(), found.motions.tolist()
+    >>> result = load_path(nonlinear(parallelogram()), "platform.x", np.linspace(-1e-4, 1e-4, 3), weight=0.0)
+    >>> result.state.reactions[:, 0].round(0).tolist(), result.motions.tolist()
     ([-1939.0, 0.0, 1939.0], [0, 0, 0])
     """
     values = np.asarray(values, dtype=float)
-    rest = equilibrium(model, loads, hold=hold, weight=weight)
-    found = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, options=options)
-    begin, start = begin_along(rest, drive, loads or {}, hold or {}, weight)
-    found = continue_along(begin, found, values - start)
-    return LoadPath(drive, values, found, unstable_motions(found), tuple(hold or {}))
+    unloaded = equilibrium(model, loads, hold=hold, weight=weight)
+    states = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, options=options)
+    begin, start = begin_along(unloaded, drive, loads or {}, hold or {}, weight)
+    states = continue_along(begin, states, values - start)
+    return LoadPath(drive, values, states, unstable_motions(states), tuple(hold or {}))
 
 
-def begin_along(rest: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
-    """The stage at rest with its drive held there, and the value of the drive."""
-    driven = drive in {channel.name for channel in rest.model.inputs}
-    if not bool(rest.converged):
-        return rest, 0.0
+def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
+    """Compute the equilibrium with the drive coordinate fixed, and the value of the drive."""
+    driven = drive in {channel.name for channel in unloaded.model.inputs}
+    if not bool(unloaded.converged):
+        return unloaded, 0.0
     owner, _, component = drive.rpartition(".")
-    start = 0.0 if driven else float(rest.twist(owner)[COMPONENTS.index(component)])
+    start = 0.0 if driven else float(unloaded.twist(owner)[COMPONENTS.index(component)])
     held = {**({} if driven else {drive: start}), **hold}
-    return equilibrium(rest.model, loads, hold=held, weight=weight, start=rest), start
+    return equilibrium(unloaded.model, loads, hold=held, weight=weight, start=unloaded), start
 
 
-def continue_along(begin: State, found: State, away: Array) -> State:
-    """States (k,) of a drive that is `away` (k,) from where it begins; stable ones that do not continue one another have no numbers."""
+def continue_along(begin: State, states: State, away: Array) -> State:
+    """Compute states (k,) of a drive at distances `away` (k,) from its start; stable ones that do not continue one another are NaN."""
     if not bool(begin.converged):
-        return replace(found, status=np.where(found.converged, begin.status, found.status), reached=0.0 * found.reached)
-    pose, status, reached = found.pose, np.array(found.status), np.array(found.reached)
-    stable = unstable_motions(found) == 0
+        return replace(states, status=np.where(states.converged, begin.status, states.status), reached=0.0 * states.reached)
+    pose, status, reached = states.pose, np.array(states.status), np.array(states.reached)
+    stable = unstable_motions(states) == 0
     last = dict.fromkeys((False, True), (Task(begin.model, begin.pose, begin.loads, begin.hold), 0.0))
     for case in np.argsort(np.abs(away)):
         if not stable[case]:
             continue
-        one, there, side = np.array([case]), float(away[case]), bool(away[case] > 0.0)
-        before, here = last[side]
-        end = Task(found.model, pose.of(one), found.loads.of(one), found.hold.of(one))
+        one, distance, side = np.array([case]), float(away[case]), bool(away[case] > 0.0)
+        before, covered = last[side]
+        end = Task(states.model, pose.of(one), states.loads.of(one), states.hold.of(one))
         after = continued(before, end)
         status[case], pose = after.status[0], pose.put(one, after.pose)
         if status[case] == Status.CONVERGED:
-            last[side] = (replace(end, start=after.pose), there)
+            last[side] = (replace(end, start=after.pose), distance)
         else:
-            reached[case] = (here + float(after.reached[0]) * (there - here)) / there
-    return replace(found, pose=pose, status=status, reached=reached)
+            reached[case] = (covered + float(after.reached[0]) * (distance - covered)) / distance
+    return replace(states, pose=pose, status=status, reached=reached)
 
 
 def equilibria_along(
@@ -137,28 +140,28 @@ def equilibria_along(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> State:
-    """The states (k,) of a `load_path`, of which nothing is asked but where they are.
+    """Compute the states (k,) of a `load_path` without stability and events.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> equilibria_along(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4]), weight=0.0).reactions[:, 0].round(0).tolist()
     [0.0, 1939.0]
     """
-    values, rest, locked, options = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(options, arcs=0)
+    values, others, locked, options = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(options, arcs=0)
     known = {channel.name for channel in model.inputs}
 
     def at(some: Array, start: State | None) -> State:
         if drive in known:
-            driven = {**rest, drive: some + rest.get(drive, 0.0)}
+            driven = {**others, drive: some + others.get(drive, 0.0)}
             return equilibrium(model, driven, hold=locked, weight=weight, start=start, options=options)
-        return equilibrium(model, rest, hold={drive: some, **locked}, weight=weight, start=start, options=options)
+        return equilibrium(model, others, hold={drive: some, **locked}, weight=weight, start=start, options=options)
 
-    found = at(values, None)
-    while 0 < (count := int(np.sum(found.converged))) < values.size:
-        found = at(values, _neighbour(found))
-        if int(np.sum(found.converged)) <= count:
+    states = at(values, None)
+    while 0 < (count := int(np.sum(states.converged))) < values.size:
+        states = at(values, _neighbour(states))
+        if int(np.sum(states.converged)) <= count:
             break
-    return found
+    return states
 
 
 def equilibria_of_designs(
@@ -170,12 +173,12 @@ def equilibria_of_designs(
     hold: Sequence[Mapping[str, float]],
     weight: float = 1.0,
 ) -> list[State]:
-    """The states of `equilibria_along` of several designs of one structure, in one run; values (k,) and locked coordinates of each.
+    """Compute the states of `equilibria_along` for several designs of one structure; values (k,) and locked coordinates of each.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> (found,) = equilibria_of_designs([nonlinear(parallelogram())], "platform.x", [np.array([1e-4])], loads={}, hold=[{}], weight=0.0)
-    >>> found.reactions[:, 0].round(0).tolist()
+    >>> (result,) = equilibria_of_designs([nonlinear(parallelogram())], "platform.x", [np.array([1e-4])], loads={}, hold=[{}], weight=0.0)
+    >>> result.reactions[:, 0].round(0).tolist()
     [1939.0]
     """
     alone = [
@@ -185,16 +188,16 @@ def equilibria_of_designs(
     if drive in {channel.name for channel in models[0].inputs}:
         return [each() for each in alone]
     held = [{drive: some, **locked} for some, locked in zip(values, hold, strict=True)]
-    found = equilibria(models, loads, hold=held, weight=weight, options=replace(USUAL, arcs=0))
-    return [one if one.converged.all() else again() for one, again in zip(found, alone, strict=True)]
+    states = equilibria(models, loads, hold=held, weight=weight, options=replace(USUAL, arcs=0))
+    return [one if one.converged.all() else again() for one, again in zip(states, alone, strict=True)]
 
 
-def _neighbour(found: State) -> State:
-    """The state with every case that failed begun from the nearest that did not."""
-    places, good = np.arange(len(found.status)), np.flatnonzero(found.converged)
+def _neighbour(states: State) -> State:
+    """Restart every failed case from the nearest converged one."""
+    places, good = np.arange(len(states.status)), np.flatnonzero(states.converged)
     nearest = good[np.argmin(np.abs(places[:, None] - good), axis=1)]
-    chosen = np.where(found.converged, places, nearest)
-    return replace(found, pose=found.pose.of(chosen))
+    chosen = np.where(states.converged, places, nearest)
+    return replace(states, pose=states.pose.of(chosen))
 
 
 @check_arguments
@@ -209,16 +212,17 @@ def continuation(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Arc-length continuation: equilibria along the factor on `load`, past limit points.
+    """Compute equilibria along the factor on `load` by arc-length continuation, past limit points.
 
-    `step` is the longest step in the motion of the bodies, over the flexures' length and in radians; where the path turns steps are
-    shorter. The path is `points` times as long, and ends before where no further equilibrium is found. Coordinates in `hold` stay
-    locked at their values. After E. Riks (Int. J. Solids Structures 15, 1979), steps normal to the first of each.
+    `step` is the maximum step in body motion, over the flexure length and in radians; steps are shorter on a curved path. The path is
+    `points` times as long, and ends earlier without a further equilibrium. Coordinates in `hold` stay locked at their values.
+
+    After E. Riks (Int. J. Solids Structures 15, 1979), with corrections normal to the first step.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = continuation(nonlinear(parallelogram()), {"platform.fx": 100.0}, points=2, weight=0.0)
-    >>> found.values.size, bool(found.state.converged.all())
+    >>> result = continuation(nonlinear(parallelogram()), {"platform.fx": 100.0}, points=2, weight=0.0)
+    >>> result.values.size, bool(result.state.converged.all())
     (3, True)
     """
     start = equilibrium(model, rest or {}, hold=hold, weight=weight)
@@ -226,7 +230,7 @@ def continuation(
     names = [channel.name for channel in model.inputs]
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
-        raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
+        raise refuse(", ".join(unknown) or "load", "not a load of this stage, or zero", "Name a force, moment or stroke and its size")
     course = course_of(start, load, 0.0, options)
     begin = first_point(course, start.pose, 0.0)
     return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
@@ -244,29 +248,30 @@ def post_buckling_path(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Post-buckling path: equilibria on the branch that leaves the path of `load` where it first buckles, along the factor on the load.
+    """Compute the post-buckling path: equilibria on the branch at the first bifurcation of `load`, along the factor on the load.
 
-    The first state is the last stable one before the bifurcation; the next goes along the motion that opens there, or, with `side` -1,
-    against it (the sign of `Critical.shape`). Steps and points are as in `continuation`. Raises `DesignError` as `critical_load`
-    does; where the load turns instead (a limit, which `continuation` passes); where a flexure buckles individually, its ends at rest; and
-    where no equilibrium is found on the branch.
+    The first state is the last stable one before the bifurcation. The next is in the direction of the buckling mode or, with `side` -1,
+    opposite to it (the sign of `Critical.shape`). Steps and points are as in `continuation`.
+
+    Raises `DesignError` as `critical_load` does; at a limit point, which `continuation` passes; for a flexure that buckles between fixed
+    ends; and without an equilibrium on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = post_buckling_path(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
-    >>> found.values.round(3).tolist()
+    >>> result = post_buckling_path(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
+    >>> result.values.round(3).tolist()
     [11.063, 11.065, 11.069]
     """
-    given = critical_load(model, load, rest=rest, weight=weight)
-    if given.kind is Kind.LIMIT:
+    critical = critical_load(model, load, rest=rest, weight=weight)
+    if critical.kind is Kind.LIMIT:
         raise refuse(
-            "load", f"at {given.factor:.6g} times the load equilibrium ends: nothing branches", "Follow the load with fs.continuation"
+            "load", f"limit point without a branch at {critical.factor:.6g} times the load", "Follow the load with fs.continuation"
         )
-    return beyond(given, load, side=side, step=step, points=points, options=options)
+    return beyond(critical, load, side=side, step=step, points=points, options=options)
 
 
 def beyond(
-    given: Critical,
+    critical: Critical,
     load: Mapping[str, float],
     *,
     side: float = 1.0,
@@ -274,11 +279,12 @@ def beyond(
     points: int = 60,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Equilibria from where a load is critical, along the factor on it: on the branch that opens there, or past the limit or bend.
+    """Compute equilibria beyond a critical point, along the load factor: on the branch of a bifurcation, past a limit or bend.
 
-    `given` is what `critical_load` found for the load; steps, points and `side` are as in `post_buckling_path`; past a limit, or where the
-    path bends, there is one side only. Raises `DesignError` for the other one, where a flexure buckles individually, its ends at rest, and
-    where no equilibrium is found.
+    `given` is the result of `critical_load` for the load; steps, points and `side` are as in `post_buckling_path`. Past a limit point or a
+    bend only one side exists.
+
+    Raises `DesignError` for the other side, for a flexure that buckles between fixed ends, and without an equilibrium.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -287,35 +293,37 @@ def beyond(
     >>> beyond(given, load, side=-1.0, points=2).values.round(3).tolist()
     [11.063, 11.065, 11.069]
     """
-    start, what = given.state, f"at {given.factor:.6g} times the load"
-    if given.kind is not Kind.BIFURCATION and side < 0.0:
-        raise refuse("side", f"{what} the path goes on to one side: a {given.kind.value}", "Follow that one")
-    if given.link and given.kind is Kind.BIFURCATION:
-        raise refuse(given.link, f"{what} it gives way between its ends, which rest", "Draw it as two parts with a light body between them")
-    course, into = course_of(start, load, given.factor, options), None
-    if given.kind is Kind.BIFURCATION:
+    start, what = critical.state, f"at {critical.factor:.6g} times the load"
+    if critical.kind is not Kind.BIFURCATION and side < 0.0:
+        raise refuse("side", f"{what} the path continues to one side only: a {critical.kind.value}", "Use the other side")
+    if critical.link and critical.kind is Kind.BIFURCATION:
+        raise refuse(
+            critical.link, f"{what} the flexure buckles between fixed ends", "Model it as two parts with a light body between them"
+        )
+    course, into = course_of(start, load, critical.factor, options), None
+    if critical.kind is Kind.BIFURCATION:
         others = np.zeros(len(course.scale) - start.model.freedoms)
-        into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
-    begin = critical_point(course, start.pose, given.factor, into)
-    found = [begin, *follow_course(course, begin, step, points)]
-    if len(found) == 1:
-        raise refuse("load", f"no equilibrium is found beyond what gives way {what}", "Try a smaller step")
-    return _along(course, found, start.held)
+        into = np.concatenate([np.sign(side) * np.ravel(critical.shape), others])
+    begin = critical_point(course, start.pose, critical.factor, into)
+    path = [begin, *follow_course(course, begin, step, points)]
+    if len(path) == 1:
+        raise refuse("load", f"no equilibrium beyond the critical point {what}", "Use a smaller step")
+    return _along(course, path, start.held)
 
 
-def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> LoadPath:
-    factors, count = np.array([each.factor for each in found]), len(found)
+def _along(course: Course, path: list[Point], held: tuple[str, ...]) -> LoadPath:
+    factors, count = np.array([each.factor for each in path]), len(path)
     loads, hold = course.at(0.0)
     inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(course.gain, name) for name in ("inputs", "gravity"))
     along = Loads(inputs, gravity, loads.constant + factors * course.gain.constant)
-    whole = join([each.found for each in found])
+    whole = join([each.found for each in path])
     states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
-    motions = np.array([each.motions for each in found])
-    return LoadPath("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(found)]))
+    motions = np.array([each.motions for each in path])
+    return LoadPath("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(path)]))
 
 
 def _turn(one: Point, other: Point) -> float:
-    """The extreme factor between two points, of the cubic with their values and slopes; NaN where it goes one way."""
+    """The extreme factor between two points, of the cubic with their values and slopes; NaN if monotonic."""
     if one.slope * other.slope >= 0.0:
         return np.nan
     cubic = scipy.interpolate.CubicHermiteSpline([0.0, np.linalg.norm(other.step)], [one.factor, other.factor], [one.slope, other.slope])

@@ -7,7 +7,7 @@ about its planes is cut there: the six motions are even or odd about each, so a 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -30,7 +30,8 @@ from flexstage.solid.fea.hinges.roots import Roots, own_roots, rises
 from flexstage.solid.fea.hinges.specimen import END, START, Specimen, own_stub
 from flexstage.solid.fea.hinges.stub import beam
 from flexstage.solid.fea.jobs.memory import Counts
-from flexstage.solid.fea.jobs.progress import Report, Stage, silent
+from flexstage.solid.fea.jobs.progress import Stage
+from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy, change, remaining
 from flexstage.solid.fea.meshing.fineness import Fineness
 from flexstage.solid.fea.meshing.mesh import PieceMesh, core_points, generate_mesh, restrict_sizes
@@ -114,15 +115,7 @@ class _Mesh:
     mirrors: Mirrors
 
 
-@dataclass(frozen=True, eq=False)
-class Listener:
-    """Who is told how far a hinge is, and who is asked whether there is room for its first mesh (nobody, unless stated)."""
-
-    report: Report = silent
-    ask: Callable[[Counts], None] = lambda _counts: None
-
-
-_NOBODY = Listener()
+_NOBODY = Call()
 
 
 @check_arguments
@@ -131,7 +124,7 @@ def hinge_compliance(
     material: Material,
     accuracy: Accuracy | None = None,
     stub: float | None = None,
-    told: Listener = _NOBODY,
+    told: Call = _NOBODY,
     *,
     roots: Roots | None = None,
 ) -> HingeSolid:
@@ -211,7 +204,7 @@ def _label(part: Shaped) -> str:
     return f"the {part.kind}"
 
 
-def _solves(subject: _Subject, asked: Accuracy, told: Listener) -> Iterator[_Solve]:
+def _solves(subject: _Subject, asked: Accuracy, told: Call) -> Iterator[_Solve]:
     """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms.
 
     Where the lowest order has too many on the usual mesh, as wide notches do, a coarser mesh is taken, beginning with order two. Freedoms

@@ -56,11 +56,10 @@ class HingeJob(StoredJob):
 
     def work(self, call: Call) -> HingeSolid:
         """Compute it. What is refused is told by the name it has for the user."""
-        from flexstage.solid.fea.hinges.hinge import Listener, hinge_compliance
+        from flexstage.solid.fea.hinges.hinge import hinge_compliance
 
         try:
-            told = Listener(call.report, call.ask)
-            return hinge_compliance(self.form.part, self.form.material, self.asked, told=told, roots=self.form.roots)
+            return hinge_compliance(self.form.part, self.form.material, self.asked, told=call, roots=self.form.roots)
         except DesignError as error:
             kind = f"the {self.form.part.kind}"
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None

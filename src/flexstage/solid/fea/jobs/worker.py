@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.processes.jobs import Line, limit_memory
 from flexstage.solid.fea.jobs.install import require_solver
 from flexstage.solid.fea.jobs.memory import Counts
-from flexstage.solid.fea.jobs.progress import Report, Stage
+from flexstage.solid.fea.jobs.progress import Report, Stage, silent
 
 _SLACK, _SHARE = 5e8, 1.2
 """What libraries take beyond a job's own memory [bytes], and how much more it may take than was planned with."""
@@ -29,9 +29,9 @@ class Call:
     `ask` waits until there is room for a mesh, expected or made.
     """
 
-    report: Report
-    ask: Callable[[Counts], None]
-    attempt: int
+    report: Report = silent
+    ask: Callable[[Counts], None] = lambda _counts: None
+    attempt: int = 0
 
 
 class Job(ABC):

@@ -7,11 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from flexstage.analysis.assessment.requirements import Verdict
-from flexstage.base.storage.digest import digest
-from flexstage.base.version import __version__
 from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Head, Headline, Legend, Picture, Prose, Section, Viewer, page, section
+from flexstage.show.page import Abreast, Headline, Legend, Picture, Prose, Section, Viewer, page, section
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.view import legend
 from flexstage.show.sections.caveats import caveat_section
@@ -21,8 +19,8 @@ from flexstage.studies.optimisation.result import Front, Optimum
 from flexstage.studies.optimisation.show.figures import convergence_figure, front_figure
 from flexstage.studies.optimisation.show.tables import front_tables, optimise_tables
 from flexstage.studies.optimisation.values import values_of
-from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
+from flexstage.studies.sweeps.show.report import study_head
 
 _SEARCH = (
     "Left: accepted designs of every start; open: some limit is not kept. Right: each variable in its range, as it stands and at the end."
@@ -50,7 +48,7 @@ def optimise_report(found: Optimum) -> str:
         section("Limits", [limits, *rest[:-1]]),
         section("Starts", rest[-1:]),
     ]
-    return page(_head(study, "An optimisation", _headline(found)), sections, stages)
+    return page(study_head(study, "An optimisation", _headline(found)), sections, stages)
 
 
 def _stage(stages: Mapping[str, StageData]) -> Section | None:
@@ -78,7 +76,7 @@ def front_report(found: Front) -> str:
         caveat_section(found.study.design, loaded_findings(found.study)),
     ]
     said = Headline(f"{len(found.points)} designs, none of them better than another in both objectives.")
-    return page(_head(found.study, "A front of two objectives", said), sections, {"stage": data})
+    return page(study_head(found.study, "A front of two objectives", said), sections, {"stage": data})
 
 
 def _headline(found: Optimum) -> Headline:
@@ -91,8 +89,3 @@ def _headline(found: Optimum) -> Headline:
     kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
     told = f"; {sum(kept)} of {len(kept)} limits are kept" if kept else ""
     return Headline(f"{asked.name}: {before} as it stands, {after} at the optimum{told}.", all(kept))
-
-
-def _head(study: Study, kind: str, said: Headline) -> Head:
-    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
-    return Head(study.name, kind, origin, said)

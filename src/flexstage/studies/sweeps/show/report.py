@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
-from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Block, Head, Headline, Picture, Section, page, section
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import stage_section
 from flexstage.show.table import result_table
-from flexstage.show.viewer.data import StageData, stage_data
+from flexstage.show.viewer.data import stage_data
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.execution.store import Results
@@ -36,9 +32,9 @@ def sweep_report(sweep: Sweep) -> str:
     if found.used:
         effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
         designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
-    stages = _ends(study, results)
+    data = stage_data(study.design)
     sections: list[Section | None] = [
-        _extremes(study, stages),
+        stage_section(data),
         section("Responses", [result_table(sweep.responses, notes=limit_notes(study, results)), designs]),
         caveat_section(study.design, loaded_findings(study)),
         section("What was varied", [variable_table(study, results)]),
@@ -46,46 +42,13 @@ def sweep_report(sweep: Sweep) -> str:
         section("Interactions", _interactions(study, found)),
         section("Designs without values", [failure_table(results)] if results.failures else []),
     ]
+    return page(study_head(study, "A sweep of designs", _headline(study, results)), sections, {"stage": data})
+
+
+def study_head(study: Study, kind: str, said: Headline) -> Head:
+    """The head of a study's page: its name, its design and the version."""
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
-    head = Head(study.name, "A sweep of designs", origin, _headline(study, results))
-    return page(head, sections, {key: each.data for key, each in stages.items()})
-
-
-@dataclass(frozen=True, eq=False)
-class _End:
-    """A design of a sweep with its data, and in words which it is."""
-
-    design: Mechanism
-    data: StageData
-    said: str
-
-
-def _ends(study: Study, results: Results) -> dict[str, _End]:
-    """The designs with the largest and the least first response of those that keep the limits; the study's own where there are none."""
-    if not len(results.designs) or not results.names[1]:
-        return {"stage": _End(study.design, stage_data(study.design), "")}
-    values = results.responses[:, 0]
-    kept = study.feasible(results.responses) & np.isfinite(values)
-    if not np.any(kept):
-        return {"stage": _End(study.design, stage_data(study.design), "No design keeps all limits: drawn is the one as it stands.")}
-    name, measure = next(iter(study.columns.items()))
-    ends: dict[str, _End] = {}
-    rows = {"stage": ("largest", np.argmax(np.where(kept, values, -np.inf))), "least": ("least", np.argmin(np.where(kept, values, np.inf)))}
-    for key, (word, row) in rows.items():
-        design = study.mechanism_for(results.variables[int(row)])
-        said = f"the {word} {name}, {format_value(float(values[int(row)]), measure.quantity.si)}"
-        ends[key] = _End(design, stage_data(design), said)
-    return ends
-
-
-def _extremes(study: Study, ends: dict[str, _End]) -> Section | None:
-    """The stage, of which the page holds one or two designs."""
-    first = ends["stage"]
-    if "least" not in ends:
-        return stage_section(first.data, said=first.said)
-    of = "Of the designs that keep the limits" if study.limits else "Of the designs"
-    said = f"{of}, drawn is that with {first.said}; where it turns, the outline behind it is that with {ends['least'].said}."
-    return stage_section(first.data, ghost="least", said=said)
+    return Head(study.name, kind, origin, said)
 
 
 def _headline(study: Study, results: Results) -> Headline:
