@@ -88,7 +88,7 @@ def test_margins_are_marked_where_the_open_loop_has_them() -> None:
     assert found.curves is not None
     assert {each.text.split(" margin")[0] for each in spots} == {"x: gain", "x: phase"}
     for spot in spots:
-        opened = 1.0 / found.curves.response.at(np.array([spot.x]))[0, 0, 0] - 1.0
+        opened = 1.0 / found.curves.response.transfer(np.array([spot.x]))[0, 0, 0] - 1.0
         assert spot.y == pytest.approx(abs(opened), rel=1e-6)
     table = margin_tables(found)[1]
     assert table is not None
