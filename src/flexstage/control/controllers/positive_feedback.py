@@ -88,7 +88,7 @@ def place_poles(frequency: float, damping: float, static: float = 1.0) -> Positi
     return PositiveFeedback(float(position), turning / (2.0 * np.pi), float(0.5 * cubic / turning), float(velocity))
 
 
-def position_laws(place: Place, step: float) -> list[PositiveFeedback]:
+def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
     """Positive position feedback around the first resonance, of several shares of its static gain, frequencies and dampings."""
     if place.resonance is None or not place.static > 0.0:
         return []
@@ -101,18 +101,18 @@ def position_laws(place: Place, step: float) -> list[PositiveFeedback]:
     return list(_tracking(filters, place, step))
 
 
-def velocity_laws(place: Place, step: float) -> list[PositiveFeedback]:
+def velocity_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
     """Positive velocity and position feedback that places the first resonance at several dampings."""
     if place.resonance is None or not place.static > 0.0:
         return []
     return list(_tracking([place_poles(place.resonance, damping, place.static) for damping in _PLACED], place, step))
 
 
-def _tracking(filters: list[PositiveFeedback], place: Place, step: float) -> Iterator[PositiveFeedback]:
+def _tracking(filters: list[PositiveFeedback], place: Place, step: float | None) -> Iterator[PositiveFeedback]:
     """Those that an integrator makes pass 1 at the place."""
     turning = warped(place.frequency, step)
     for each in filters:
-        if each.frequency > _OF_RATE / step:
+        if step is not None and each.frequency > _OF_RATE / step:
             continue
         gain = tracking_gain(place, turning, each.feedback(1j * turning))
         if gain is not None:
