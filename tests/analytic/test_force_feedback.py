@@ -13,7 +13,7 @@ from flexstage.control.damping.force_feedback import ForceFeedback, most_damping
 from flexstage.control.damping.legs import legs, pair_zeros
 from flexstage.control.damping.sampled import sample_legs
 from flexstage.control.example import integral
-from flexstage.control.noise import DisturbanceResponse, noise_budget
+from flexstage.control.noise import disturbance_response, noise_budget
 from flexstage.control.plant_models.electronics import AmplifierSettings, sampling_chain
 from flexstage.control.plant_models.plants import plant
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
@@ -232,7 +232,7 @@ def test_strain_gauges_in_the_legs_sense_what_sensors_of_force_do():
         closed = loop(found.plant, integral(found.plant, 20.0))
         budget = noise_budget(closed, {}, (10.0, 1000.0), ("relative.x",))
         lines = np.geomspace(10.0, 1000.0, 20_001)
-        gain = np.abs(DisturbanceResponse(closed, ("sensed.B",), ("relative.x",)).at(lines)[:, 0, 0]) ** 2
+        gain = np.abs(disturbance_response(closed, ("sensed.B",), ("relative.x",), lines)[:, 0, 0]) ** 2
         share = budget.squares[0, [source.channel for source in budget.sources].index("sensed.B")]
         np.testing.assert_allclose(share, np.trapezoid(gain * found.damping.sensed[0].noise ** 2, lines), rtol=1e-3)
         if link == "pzt":

@@ -15,7 +15,7 @@ from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
 from flexstage.control.example import integral, integral_loop
-from flexstage.control.noise import DisturbanceResponse, noise_budget
+from flexstage.control.noise import disturbance_response, noise_budget
 from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Sensor, sampling_chain
 from flexstage.control.plant_models.plants import plant, sensor_filter
 from flexstage.control.systems.closed import loop
@@ -76,7 +76,7 @@ def test_amplifier_noise_is_its_integral(seed):
     ends += [np.abs(number / step + sign * near) for number in range(1, 8) for sign in (-1.0, 1.0)]
     nodes, weights = quadrature(np.unique(np.concatenate(ends)))
     for name in closed.plant.actuators:
-        size = np.abs(DisturbanceResponse(closed, (name,), outputs).at(nodes)[:, :, 0]) ** 2
+        size = np.abs(disturbance_response(closed, (name,), outputs, nodes)[:, :, 0]) ** 2
         density = closed.plant.hardware.amplifiers[name].noise_density
         assert np.allclose(weights @ size * density**2, _square(closed, Kind.AMPLIFIER, name, found), atol=0.0, rtol=1e-4)
 
@@ -141,7 +141,7 @@ def test_fast_samples_are_a_continuous_loop():
     fast = noise_budget(integral_loop(150.0, given), {}, (1.0, 400.0), OUTPUTS)
     assert np.allclose(_square(None, Kind.GAUGE, "S", fast), _gauge_square(continuous, 0), atol=0.0, rtol=2e-3)
     nodes, weights = quadrature(_panels(1e-4, 2e5, np.concatenate([continuous.plant.system.poles, continuous.system.poles])))
-    driven = np.abs(DisturbanceResponse(continuous, ("B",), OUTPUTS).at(nodes)[:, :, 0]) ** 2
+    driven = np.abs(disturbance_response(continuous, ("B",), OUTPUTS, nodes)[:, :, 0]) ** 2
     density = continuous.plant.hardware.amplifiers["B"].noise_density
     assert np.allclose(_square(None, Kind.AMPLIFIER, "B", fast), weights @ driven * density**2, atol=0.0, rtol=2e-3)
     with pytest.raises(DesignError, match="it is continuous"):

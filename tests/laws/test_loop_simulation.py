@@ -175,10 +175,10 @@ def test_creep_is_run_between_stack_and_stage():
     through = static(loop.strokes, entering, tuple(Channel(f"command.{name}", "m") for name in loop.actuators), wired.step)
     reference, _ = way(full_loop(), 400)
     whole = simulate(without_limits(machine(add_creep(wired.plant, creep), through)), reference)
-    crept, states = np.empty_like(whole.stroke), np.zeros((6, 2))
-    for value, out in zip(whole.stroke, crept, strict=True):
-        out[:] = creep.instant * value + np.vecdot(creep.gains, states)
-        states -= np.expm1(-1e-4 / creep.times) * (value[:, None] - states)
+    crept, states, risen = np.empty_like(whole.stroke), np.zeros_like(creep.times), -np.expm1(-1e-4 / creep.times)
+    for row, stroke in enumerate(whole.stroke):
+        crept[row] = creep.instant * stroke + np.sum(creep.gains * states, axis=1)
+        states += risen * (stroke[:, None] - states)
     # Creep and the amplifiers' lag may change places: fed with what creep makes of the held strokes, the plain plant moves nearly alike
     # (its hold keeps the value a sample takes at its start; the creep goes on within it).
     fine = simulate(without_limits(machine(wired.plant, replace(through, D=np.eye(6)))), crept)

@@ -125,8 +125,9 @@ def test_sensitivities_add_up(seed, rate):
     loops = {cut: open_at(closed, cut).transfer(at) for cut in LoopBreak}
     assert np.allclose(response["error"] @ (identity + loops[LoopBreak.POSE]), identity, atol=1e-8)
     assert np.allclose(sensitivity(open_at(closed, LoopBreak.POSE)).transfer(at), response["error"], rtol=1e-7, atol=1e-9)
-    first, *others = (np.linalg.det(np.eye(each.shape[-1]) + each) for each in loops.values())
-    assert all(np.allclose(each, first, rtol=1e-7) for each in others)
+    determinants = [np.linalg.det(np.eye(each.shape[-1]) + each) for each in loops.values()]
+    for other in determinants[1:]:
+        assert np.allclose(other, determinants[0], rtol=1e-7)
 
 
 def _scaled(closed, cut, channel, factor):

@@ -131,7 +131,7 @@ def noise_budget(
     squares, listed = _sum_by_source(mean_squares(white), sources)
     spectra = band_spectra(closed, floor, seen)
     nodes, weights = quadrature(_panels(closed, floor, band))
-    every = np.abs(DisturbanceResponse(closed, tuple(spectra), seen).at(nodes)) ** 2
+    every = np.abs(disturbance_response(closed, tuple(spectra), seen, nodes)) ** 2
     gains = every[:, :count]
     densities = np.stack([spectrum.at(nodes) for spectrum in spectra.values()], axis=-1) if spectra else np.zeros((len(nodes), 0))
     shares = np.einsum("f,fpm,fm->pm", weights, gains, densities)
@@ -203,29 +203,18 @@ def _source(name: str) -> Source:
     return Source(Kind.FLOOR if name.startswith(f"{GROUND}.") else Kind.AMPLIFIER, name)
 
 
-@dataclass(frozen=True, eq=False)
-class DisturbanceResponse:
-    """The loop's response to what disturbs the stage between the samples: inputs of the plant, `ground.x` ... or an actuator's stroke.
+def disturbance_response(closed: Loop, inputs: tuple[str, ...], outputs: tuple[str, ...], frequencies: Array) -> Array:
+    """Response (f, p, m) of a loop to disturbances of its stage between the samples: `ground.x` ... or an actuator's stroke.
 
-    At the samples y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w.
+    At the samples y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w, at `frequencies` (f,) in Hz, above half the sampling rate too.
     """
-
-    closed: Loop
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-
-    def at(self, frequencies: Array) -> Array:
-        """H, complex (f, p, m), at `frequencies` (f,) in Hz, above half the sampling rate too."""
-        given = self.closed.plant
-        if not self.inputs:
-            return np.zeros((len(frequencies), len(self.outputs), 0), complex)
-        own = [name for name in self.outputs if name in given.system.output_names]
-        rows = [self.outputs.index(name) for name in own]
-        felt = select(given.system, self.inputs, (*(f"gap.{name}" for name in given.gauges), *own)).sweep(frequencies)
-        noises = [f"noise.{name}" for name in given.gauges]
-        found = select(self.closed.system, noises, self.outputs).sweep(frequencies) @ felt[:, : len(noises)]
-        found[:, rows] += felt[:, len(noises) :]
-        return found
+    given = closed.plant
+    own = [name for name in outputs if name in given.system.output_names]
+    gaps = select(given.system, inputs, (*(f"gap.{name}" for name in given.gauges), *own)).sweep(frequencies)
+    noises = [f"noise.{name}" for name in given.gauges]
+    found = select(closed.system, noises, outputs).sweep(frequencies) @ gaps[:, : len(noises)]
+    found[:, [outputs.index(name) for name in own]] += gaps[:, len(noises) :]
+    return found
 
 
 def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float]) -> Array:

@@ -127,18 +127,12 @@ def gauge_noise(given: Plant, gauge: str, density: float) -> System:
     >>> bool(found.step), round(float(mean_squares(found).sum() / (1e-24 * 0.5 * np.pi * 3000.0)), 6)  # density^2 pi/2 f of a lag f
     (True, 1.0)
     """
-    filters = select(sensor_filter(given), [f"noise.{gauge}"], [f"filtered.{gauge}"])
-    return _filtered_noise(filters, gauge, density, given.hardware.step or 0.0)
-
-
-def _filtered_noise(filters: System, name: str, density: float, step: float) -> System:
-    """The samples of white noise behind lag and filter: x[k+1] = e^{AT} x[k] + L w[k], unit w."""
-    outputs = (Channel(f"coloured.{name}", filters.outputs[0].unit),)
-    used = reachable(filters)
+    used, step = reachable(select(sensor_filter(given), [f"noise.{gauge}"], [f"filtered.{gauge}"])), given.hardware.step or 0.0
+    outputs = (Channel(f"coloured.{gauge}", used.outputs[0].unit),)
     if not len(used.A):
-        return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{name}", "1"),), outputs, step)
-    factor = held_noise(used.A, used.B * density / np.sqrt(2.0), step)
-    inputs = tuple(Channel(f"white.{name}.{number + 1}", "1") for number in range(factor.shape[1]))
+        return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{gauge}", "1"),), outputs, step)
+    factor = held_noise(used.A, used.B * density / np.sqrt(2.0), step)  # x[k+1] = e^{AT} x[k] + L w[k], unit w
+    inputs = tuple(Channel(f"white.{gauge}.{number + 1}", "1") for number in range(factor.shape[1]))
     return System(scipy.linalg.expm(used.A * step), factor, used.C, np.zeros((1, len(inputs))), inputs, outputs, step)
 
 

@@ -69,7 +69,7 @@ class Decentralised(CheckedFields):
             B=np.hstack([entry @ map_ for entry, map_ in zip(entries, seen, strict=True)]),
             C=loops.drive @ exit_,
             D=np.hstack([loops.drive @ matrix @ map_ for matrix, map_ in zip(direct, seen, strict=True)]),
-            inputs=(*coordinates.motions("error."), *coordinates.motions("pose."), *coordinates.commands("applied.")),
+            inputs=coordinates.controller_inputs(),
             outputs=coordinates.commands("command."),
             step=step,
         )

@@ -30,7 +30,7 @@ class Family:
     """
 
     name: str
-    laws: Callable[[Place, float], Sequence[Law]]
+    laws: Callable[[Place, float | None], Sequence[Law]]
     notched: bool = True
     others: str = "PID or LQG"
     steps: tuple[float, float] = (1.3, 2.0)
@@ -48,6 +48,6 @@ def tracking_gain(place: Place, turning: float, feedback: complex) -> float | No
     return turning * float(np.sqrt(rest) - feedback.imag)
 
 
-def warped(frequency: float, step: float) -> float:
+def warped(frequency: float, step: float | None) -> float:
     """The angular frequency [1/s] at which a continuous law is what its samples by Tustin's rule are at a frequency [Hz]."""
-    return float(2.0 / step * np.tan(np.pi * frequency * step))
+    return 2.0 * np.pi * frequency if step is None else float(2.0 / step * np.tan(np.pi * frequency * step))

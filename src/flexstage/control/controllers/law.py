@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol
 
@@ -33,33 +33,45 @@ class Law(Protocol):
         ...
 
 
-def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None) -> System:
-    """A law's A (n, n), B (n, 3), C (1, n), D (1, 3) as a system: continuous, or by Tustin's rule.
+def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, kept: Sequence[bool]) -> System:
+    """A law's A (n, n), B (n, 3), C (1, n), D (1, 3) with the states that are `kept`: continuous, or by Tustin's rule.
 
     What was applied acts one sample later in a sampled law, because it is known only after the command.
 
     >>> one, none = np.eye(1), np.zeros((1, 3))
-    >>> found = law_system(0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none, 0.1)
+    >>> found = law_system(0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none, 0.1, kept=[True])
     >>> found.D.round(12).tolist()  # half a step of the error's rate 2 at once, nothing of what was applied
     [[0.1, 0.0, 0.0]]
     """
-    found = System(A, B, C, D, ENTRIES, EXIT)
+    places = np.flatnonzero(kept)
+    found = System(A[np.ix_(places, places)], B[places], C[:, places], D, ENTRIES, EXIT)
     if step is None:
         return found
     found = bilinear(found, step)
     return replace(found, D=found.D * np.array([1.0, 1.0, 0.0]))
 
 
-def gain_findings(kind: str, gains: dict[str, float], unit: str = "") -> Iterator[Finding]:
-    """Gains that are negative or no numbers.
+def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator[Finding]:
+    """Gains, with their units, that are negative or no numbers.
 
-    >>> [str(each) for each in gain_findings("PI", {"integral": -2.0}, "1/s")]
+    >>> [str(each) for each in gain_findings("PI", {"integral": (-2.0, " 1/s")})]
     ['PI: integral is -2 1/s. Give 0 or more: the signs of gauges and actuators are in the stage already, so that every loop is positive.']
     """
-    for name, value in gains.items():
+    for name, (value, unit) in gains.items():
         if not 0.0 <= value < np.inf:
             advice = "Give 0 or more: the signs of gauges and actuators are in the stage already, so that every loop is positive"
-            yield Finding(kind, f"{name} is {value:g}{' ' if unit else ''}{unit}", advice)
+            yield Finding(kind, f"{name} is {value:g}{unit}", advice)
+
+
+def corner_findings(kind: str, noun: str, corner: float, step: float | None, otherwise: str = "") -> Iterator[Finding]:
+    """A corner [Hz] of a law that the samples are too slow for.
+
+    >>> [each.what for each in corner_findings("PID", "its filter at", 900.0, 1e-3)]
+    ['its filter at 900 Hz is not below half the sampling rate, 500 Hz']
+    """
+    if step is not None and corner >= 0.5 / step:
+        what = f"{noun} {corner:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
+        yield Finding(kind, what, f"Sample above {2.0 * corner:g} Hz{otherwise}")
 
 
 def tracking_rate(time: float, step: float | None) -> float:

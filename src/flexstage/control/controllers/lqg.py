@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -221,7 +221,7 @@ def _sampled_system(control: LQG) -> System:
     error = np.hstack([np.eye(count), np.zeros((count, count)), np.linalg.pinv(Z) / control.tracking])
     A = np.vstack([model.A @ filtered + model.B @ output, np.hstack([np.zeros((count, states)), np.eye(count)])])
     B = np.vstack([model.A @ entered + model.B @ (direct + applied), step * error])
-    return System(A, B, output, direct, *_ports(control), model.step)
+    return System(A, B, output, direct, control.coordinates.controller_inputs(), control.coordinates.commands("command."), model.step)
 
 
 def with_feedforward_states(control: System, given: LQG) -> System:
@@ -244,10 +244,4 @@ def with_feedforward_states(control: System, given: LQG) -> System:
     entry = found.B.copy()
     # the observer knows the whole command
     entry[: len(model.A), columns] += model.B @ gain
-    return System(found.A, entry, found.C, found.D, found.inputs, found.outputs, found.step)
-
-
-def _ports(control: LQG) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
-    coordinates = control.coordinates
-    inputs = (*coordinates.motions("error."), *coordinates.motions("pose."), *coordinates.commands("applied."))
-    return inputs, coordinates.commands("command.")
+    return replace(found, B=entry)

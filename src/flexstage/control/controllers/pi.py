@@ -34,8 +34,8 @@ class PI(CheckedFields):
     def __post_init__(self) -> None:
         super().__post_init__()
         """Refuse gains that cannot be."""
-        found = [*gain_findings("PI", {"proportional": self.proportional}), *gain_findings("PI", {"integral": self.integral}, "1/s")]
-        require([*found, *tracking_findings("PI", self.tracking)])
+        gains = {"proportional": (self.proportional, ""), "integral": (self.integral, " 1/s")}
+        require([*gain_findings("PI", gains), *tracking_findings("PI", self.tracking)])
 
     @property
     def tracking_time(self) -> float:
@@ -48,10 +48,8 @@ class PI(CheckedFields):
         """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than the tracking."""
         require(slow_tracking_findings("PI", self.tracking, step))
         direct = np.array([[self.proportional, 0.0, 0.0]])
-        if not self.integral:
-            return law_system(np.zeros((0, 0)), np.zeros((0, 3)), np.zeros((1, 0)), direct, step)
         entry = np.array([[self.integral, 0.0, tracking_rate(self.tracking_time, step)]])
-        return law_system(np.zeros((1, 1)), entry, np.eye(1), direct, step)
+        return law_system(np.zeros((1, 1)), entry, np.eye(1), direct, step, kept=[self.integral > 0.0])
 
 
 def tracking_findings(kind: str, tracking: float | None) -> list[Finding]:

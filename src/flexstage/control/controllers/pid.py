@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.units.quantity import FREQUENCY, RATE, SHORT_TIME, TIME
-from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
+from flexstage.control.controllers.law import FIVE_DIGITS, corner_findings, gain_findings, law_system, slow_tracking_findings, tracking_rate
 from flexstage.control.controllers.pi import PI, tracking_findings
 from flexstage.control.systems.system import System
 
@@ -38,9 +38,8 @@ class PID(CheckedFields):
     def __post_init__(self) -> None:
         super().__post_init__()
         """Refuse gains that cannot be."""
-        found = list(gain_findings("PID", {"proportional": self.proportional}))
-        found += gain_findings("PID", {"integral": self.integral}, "1/s")
-        found += gain_findings("PID", {"derivative": self.derivative}, "s")
+        gains = {"proportional": (self.proportional, ""), "integral": (self.integral, " 1/s"), "derivative": (self.derivative, " s")}
+        found = list(gain_findings("PID", gains))
         if not 0.0 < self.filter < np.inf:
             what = f"the derivative's filter is at {self.filter:g} Hz"
             found.append(Finding("PID", what, "Give a positive corner, for example ten times the bandwidth"))
@@ -53,16 +52,10 @@ class PID(CheckedFields):
 
     def system(self, step: float | None = None) -> System:
         """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for a filter above half the sampling rate."""
-        require([*slow_tracking_findings("PID", self.tracking, step), *self._sampling(step)])
+        require(slow_tracking_findings("PID", self.tracking, step))
+        require(corner_findings("PID", "the derivative's filter at", self.filter, step, ", or lower the filter") if self.derivative else ())
         corner = 2.0 * np.pi * self.filter
         high = self.derivative * corner
         A, B = np.diag([0.0, -corner]), np.array([[self.integral, 0.0, tracking_rate(self.tracking_time, step)], [corner, 0.0, 0.0]])
         C, D = np.array([[1.0, -high]]), np.array([[self.proportional + high, 0.0, 0.0]])
-        kept = [number for number, used in enumerate((self.integral, self.derivative)) if used]
-        return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], D, step)
-
-    def _sampling(self, step: float | None) -> list[Finding]:
-        if step is None or not self.derivative or self.filter < 0.5 / step:
-            return []
-        what = f"the derivative's filter at {self.filter:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
-        return [Finding("PID", what, f"Sample above {2.0 * self.filter:g} Hz, or lower the filter")]
+        return law_system(A, B, C, D, step, kept=[self.integral > 0.0, self.derivative > 0.0])

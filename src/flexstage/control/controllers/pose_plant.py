@@ -11,17 +11,18 @@ from flexstage.control.systems.system import System, reachable, select
 def pose_plant(plant: Plant, offset: float = 0.0) -> System:
     """From `command.<actuator>` [m] to `pose.<c>` [m, rad]: stage, amplifiers, gauges, hold and delay; continuous where the loop is.
 
-    All modes of a sampled plant are higher by a relative `offset`: time that runs faster, lags and delays with it.
+    All modes are higher by a relative `offset`: time that runs faster, lags and delays with it.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = pose_plant(integral_loop().plant)
     >>> found.input_names, found.output_names, found.step
     (('command.B',), ('pose.x',), 0.0001)
     """
-    given, pose = plant.hardware, plant.coordinates.pose
+    given, faster = plant.hardware, 1.0 + offset
     if given.rate is not None:
-        faster = 1.0 + offset
         plant = replace(plant, hardware=replace(given, rate=given.rate / faster, delay=given.delay * faster))
+        faster = 1.0
     whole = reachable(select(zero_order_hold(plant), plant.actuators, [f"gap.{name}" for name in plant.gauges]))
-    inputs, outputs = plant.coordinates.commands("command."), plant.coordinates.motions("pose.")
-    return replace(whole, C=pose @ whole.C, D=pose @ whole.D, inputs=inputs, outputs=outputs, step=given.step)
+    pose, inputs = plant.coordinates.pose, plant.coordinates.commands("command.")
+    matrices = {"A": whole.A * faster, "B": whole.B * faster, "C": pose @ whole.C, "D": pose @ whole.D}
+    return replace(whole, **matrices, inputs=inputs, outputs=plant.coordinates.motions("pose."), step=given.step)

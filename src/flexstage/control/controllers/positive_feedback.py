@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.record import Heading
 from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.controllers.family import Family, Place, tracking_gain, warped
-from flexstage.control.controllers.law import FIVE_DIGITS, law_system, tracking_rate
+from flexstage.control.controllers.law import FIVE_DIGITS, corner_findings, law_system, tracking_rate
 from flexstage.control.systems.system import System
 
 _POSITIONS = (0.25, 0.5, 0.78)
@@ -52,24 +52,18 @@ class PositiveFeedback:
 
     def system(self, step: float | None = None) -> System:
         """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than its filter."""
-        require(self._sampling(step))
+        require(corner_findings("positive feedback", "its filter at", self.frequency, step))
         w = 2.0 * np.pi * self.frequency
         A = np.array([[0.0, 1.0, 0.0], [-(w**2), -2.0 * self.damping * w, 0.0], [0.0, 0.0, 0.0]])
         back = 0.0 if not self.tracking else tracking_rate(1.0 / self.tracking, step)
         B = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [self.tracking, 0.0, back]])
         C = np.array([[self.position * w**2, self.velocity, 1.0]])
-        kept = [0, 1, 2] if self.tracking else [0, 1]
-        return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], np.zeros((1, 3)), step)
+        return law_system(A, B, C, np.zeros((1, 3)), step, kept=[True, True, self.tracking != 0.0])
 
     def feedback(self, rate: complex) -> complex:
         """What it feeds back of the pose at a complex rate s [1/s]."""
         w = 2.0 * np.pi * self.frequency
         return (self.velocity * rate + self.position * w**2) / (rate**2 + 2.0 * self.damping * w * rate + w**2)
-
-    def _sampling(self, step: float | None) -> Iterator[Finding]:
-        if step is not None and self.frequency >= 0.5 / step:
-            what = f"its filter at {self.frequency:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
-            yield Finding("positive feedback", what, f"Sample above {2.0 * self.frequency:g} Hz")
 
 
 def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
@@ -94,7 +88,7 @@ def place_poles(frequency: float, damping: float, static: float = 1.0) -> Positi
     return PositiveFeedback(float(position), turning / (2.0 * np.pi), float(0.5 * cubic / turning), float(velocity))
 
 
-def position_laws(place: Place, step: float) -> list[PositiveFeedback]:
+def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
     """Positive position feedback around the first resonance, of several shares of its static gain, frequencies and dampings."""
     if place.resonance is None or not place.static > 0.0:
         return []
@@ -107,18 +101,18 @@ def position_laws(place: Place, step: float) -> list[PositiveFeedback]:
     return list(_tracking(filters, place, step))
 
 
-def velocity_laws(place: Place, step: float) -> list[PositiveFeedback]:
+def velocity_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
     """Positive velocity and position feedback that places the first resonance at several dampings."""
     if place.resonance is None or not place.static > 0.0:
         return []
     return list(_tracking([place_poles(place.resonance, damping, place.static) for damping in _PLACED], place, step))
 
 
-def _tracking(filters: list[PositiveFeedback], place: Place, step: float) -> Iterator[PositiveFeedback]:
+def _tracking(filters: list[PositiveFeedback], place: Place, step: float | None) -> Iterator[PositiveFeedback]:
     """Those that an integrator makes pass 1 at the place."""
     turning = warped(place.frequency, step)
     for each in filters:
-        if each.frequency > _OF_RATE / step:
+        if step is not None and each.frequency > _OF_RATE / step:
             continue
         gain = tracking_gain(place, turning, each.feedback(1j * turning))
         if gain is not None:

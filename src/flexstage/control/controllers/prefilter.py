@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-import scipy
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
@@ -15,7 +14,7 @@ from flexstage.base.record import Heading
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.systems.sampling import bilinear
-from flexstage.control.systems.system import System, connect, static
+from flexstage.control.systems.system import System, block_matrices, connect, static
 from flexstage.models.linear.model import Channel
 
 _PORTS = (Channel("reference", "m"),), (Channel("shaped", "m"),)
@@ -96,6 +95,6 @@ def _inputs(control: System, coordinates: Coordinates) -> tuple[Channel, ...]:
 def _shaped(filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates, step: float | None) -> System:
     """References of the coordinates, shaped loop by loop."""
     parts = [static(np.eye(1), *_PORTS, step) if each is None else each.system(step) for each in filters]
-    A, B, C, D = (scipy.linalg.block_diag(*(getattr(each, name) for each in parts)) for name in "ABCD")
+    A, B, C, D = block_matrices(parts)
     back, ends = np.linalg.pinv(sense), (coordinates.motions("asked."), coordinates.motions("shaped."))
     return System(A, B @ sense, back @ C, back @ D @ sense, *ends, step)

@@ -12,7 +12,7 @@ from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.record import Heading
 from flexstage.base.units.quantity import RATE, TIME
-from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
+from flexstage.control.controllers.law import FIVE_DIGITS, corner_findings, gain_findings, law_system, slow_tracking_findings, tracking_rate
 from flexstage.control.systems.system import System
 
 
@@ -38,7 +38,7 @@ class IntegralResonant(CheckedFields):
     def __post_init__(self) -> None:
         super().__post_init__()
         """Refuse gains that cannot be."""
-        found = list(gain_findings("integral resonant control", {"gain": self.gain, "tracking": self.tracking}, "1/s"))
+        found = list(gain_findings("integral resonant control", {"gain": (self.gain, " 1/s"), "tracking": (self.tracking, " 1/s")}))
         if not 0.0 < self.feedthrough < np.inf:
             advice = "Give a positive one, above the plant's static gain: twice that is usual"
             found.append(Finding("integral resonant control", f"its feed-through is {self.feedthrough:g}", advice))
@@ -47,28 +47,16 @@ class IntegralResonant(CheckedFields):
     def system(self, step: float | None = None) -> System:
         """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than its gains."""
         pole = self.gain * self.feedthrough
-        require(
-            [
-                *slow_tracking_findings("integral resonant control", self.tracking_time, step),
-                *_sampling_findings(pole / (2.0 * np.pi), step),
-            ]
-        )
+        require(slow_tracking_findings("integral resonant control", self.tracking_time, step))
+        require(corner_findings("integral resonant control", "its corner k d / (2 pi) =", pole / (2.0 * np.pi), step))
         A, C = np.diag([-pole, 0.0]), np.ones((1, 2))
         B = np.array([[0.0, self.gain, 0.0], [self.tracking, 0.0, self._tracking_rate(step)]])
-        kept = [number for number, used in enumerate((self.gain, self.tracking)) if used]
-        return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], np.zeros((1, 3)), step)
+        return law_system(A, B, C, np.zeros((1, 3)), step, kept=[self.gain > 0.0, self.tracking > 0.0])
 
     def _tracking_rate(self, step: float | None) -> float:
         if not self.tracking:
             return 0.0
         return tracking_rate(1.0 / self.tracking if self.tracking_time is None else self.tracking_time, step)
-
-
-def _sampling_findings(corner: float, step: float | None) -> list[Finding]:
-    if step is None or corner < 0.5 / step:
-        return []
-    what = f"its corner k d / (2 pi) = {corner:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
-    return [Finding("integral resonant control", what, f"Sample above {2.0 * corner:g} Hz")]
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:

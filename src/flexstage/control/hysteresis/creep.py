@@ -14,6 +14,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
 from flexstage.base.record import Heading
 from flexstage.base.units.quantity import TIME
+from flexstage.control.hysteresis.models.envelope import freeze_rows
 from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
@@ -60,8 +61,7 @@ class Creep:
     def __post_init__(self) -> None:
         """Make the arrays (axes,) and (axes, m) and read-only, and check them."""
         object.__setattr__(self, "instant", freeze(np.atleast_1d(np.asarray(self.instant, dtype=float))))
-        for name in ("gains", "times"):
-            object.__setattr__(self, name, freeze(np.atleast_2d(np.asarray(getattr(self, name), dtype=float))))
+        freeze_rows(self, "gains", "times")
         require(_findings(self))
 
     @property

@@ -72,6 +72,10 @@ class Coordinates:
         units = self.input_units or ("m",) * len(self.actuators)
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.actuators, units, strict=True))
 
+    def controller_inputs(self) -> tuple[Channel, ...]:
+        """`error.<c>`, `pose.<c>` and `applied.<actuator>`."""
+        return (*self.motions("error."), *self.motions("pose."), *self.commands("applied."))
+
 
 def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coordinates:
     """The coordinates of a stage's loop (one design). Force actuators move as far as the elastic `model` gives way.

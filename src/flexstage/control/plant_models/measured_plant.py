@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from flexstage.base.units.dimension import dimension_of
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.plant_models.reduction import mode_names
-from flexstage.control.systems.system import System, connect, lag, rename, select, static
+from flexstage.control.systems.system import System, block_matrices, connect, lag, rename, select
 from flexstage.experiment.identification.diagnosis.lateness import common_delay
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.residues import modal_sum
@@ -23,7 +23,7 @@ from flexstage.experiment.records.record import Channel as Recorded
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.eigen import eigen
-from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.model import LinearModel
 
 _ALIKE, _APART = 0.7, 0.5
 _BESIDE = 0.05
@@ -231,26 +231,19 @@ def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
 
 def _together(given: Plant, driven: System, rest: System) -> System:
     """Gaps by both; the loop's coordinates by what the gauges tell of the strokes; all other motions by the model."""
-    loop, names = given.coordinates, rest.output_names
-    others = tuple(name for name in rest.input_names if name not in loop.actuators)
-    told = [f"{kind}.{name}" for kind in ("platform", "relative") for name in loop.names]
-    gaps = [f"gap.{name}" for name in loop.gauges]
-    outside = select(rest, others, names)
-    inside = [name for name in names if name not in told and name not in gaps]
-    elastic = rename(select(rest, loop.actuators, inside), {name: f"elastic.{name}" for name in (*loop.actuators, *inside)})
-    quiet = replace(outside, outputs=tuple(Channel(f"moved.{each.name}", each.unit) for each in outside.outputs))
-    sum_of = np.zeros((len(names), len(driven.outputs) + len(inside) + len(names)))
-    sum_of[:, len(driven.outputs) + len(inside) :] = np.eye(len(names))
-    for row, name in enumerate(names):
-        if name in gaps:
-            sum_of[row, gaps.index(name)] = 1.0
-        elif name in told:
-            sum_of[row, : len(gaps)] = loop.pose[loop.names.index(name.partition(".")[2])]
-        else:
-            sum_of[row, len(gaps) + inside.index(name)] = 1.0
-    entry = (*driven.outputs, *elastic.outputs, *quiet.outputs)
-    total = static(sum_of, tuple(replace(each, name=f"sum.{each.name}") for each in entry), rest.outputs)
-    wiring = {f"sum.{each.name}": {each.name: 1.0} for each in entry} | {f"elastic.{name}": {name: 1.0} for name in loop.actuators}
-    if inside:
-        return connect([driven, elastic, quiet, total], wiring, rest.inputs, names)
-    return connect([driven, quiet, total], {name: wiring[name] for name in total.input_names}, rest.inputs, names)
+    loop, names, gaps = given.coordinates, rest.output_names, [f"gap.{name}" for name in given.gauges]
+    measured = dict(zip(gaps, np.eye(len(gaps)), strict=True))
+    measured |= {f"{kind}.{name}": row for kind in ("platform", "relative") for name, row in zip(loop.names, loop.pose, strict=True)}
+    inside = [name for name in names if name not in measured]
+    others = [name for name in rest.input_names if name not in loop.actuators]
+    parts = [driven, *([select(rest, loop.actuators, inside)] if inside else []), select(rest, others, names)]
+    A, B, C, D = block_matrices(parts)
+    own = [measured.get(name, np.zeros(len(gaps))) for name in names]
+    total = np.hstack([own, *([_same(names, inside)] if inside else []), np.eye(len(names))])
+    entry = _same([name for part in parts for name in part.input_names], rest.input_names)
+    return System(A, B @ entry, total @ C, total @ D @ entry, rest.inputs, rest.outputs)
+
+
+def _same(rows: Sequence[str], columns: Sequence[str]) -> Array:
+    """1 where names are equal."""
+    return np.array([[float(row == column) for column in columns] for row in rows])

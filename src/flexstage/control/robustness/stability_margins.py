@@ -191,14 +191,14 @@ def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
     """
     require_stable(closed, "bandwidths")
     found = found or curves(closed, LoopBreak.POSE)
-    level = np.sqrt(0.5)
-    return Bandwidths(
-        found.names,
-        np.array([_tracking(closed, found, number) for number in range(len(found.names))]),
-        np.array([_rise(found, number, lambda own: level - np.abs(1.0 - own)) for number in range(len(found.names))]),
-        np.array([_rise(found, number, lambda own: np.abs(own) - 1.0) for number in range(len(found.names))]),
-        np.array([_rise(found, number, lambda own: np.abs(own) - level) for number in range(len(found.names))]),
+    level, loops = np.sqrt(0.5), range(len(found.names))
+    risen: tuple[Callable[[Array], Array], ...] = (
+        lambda own: level - np.abs(1.0 - own),
+        lambda own: np.abs(own) - 1.0,
+        lambda own: np.abs(own) - level,
     )
+    tracking = np.array([_tracking(closed, found, number) for number in loops])
+    return Bandwidths(found.names, tracking, *(np.array([_rise(found, number, of) for number in loops]) for of in risen))
 
 
 def _rise(found: Curves, number: int, of: Callable[[Array], Array]) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.simulation.machine import Machine
-from flexstage.control.systems.system import System
+from flexstage.control.systems.system import System, select
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,29 +47,31 @@ def parts(given: Machine) -> Parts:
     >>> bool(np.all(found.from_reference == -found.from_pose))
     True
     """
-    plant, controller = given.plant, given.controller
+    plant, command = given.plant, select(given.controller, given.controller.input_names, given.commands)
     others = tuple(channel.name for channel in given.disturbances)
     motions = tuple(channel.name for channel in given.motions)
     of_error, of_reference, of_pose = (
-        _columns(controller, tuple(f"{kind}.{name}" for name in given.names)) for kind in ("error", "reference", "pose")
+        _columns(command, tuple(f"{kind}.{name}" for name in given.names)) for kind in ("error", "reference", "pose")
     )
-    rows = [controller.output_names.index(name) for name in given.commands]
+    driven = select(plant, given.actuators, (*given.readings, *motions))
+    shaken = select(plant, others, (*given.readings, *motions))
+    count = len(given.readings)
     return Parts(
         A=plant.A,
-        stroke=_columns(plant, given.actuators)[0],
-        disturbed=_columns(plant, others)[0],
-        reading=plant.C[_rows(plant, given.readings)],
-        reading_w=_columns(plant, others)[1][_rows(plant, given.readings)],
-        motion=plant.C[_rows(plant, motions)],
-        motion_f=_columns(plant, given.actuators)[1][_rows(plant, motions)],
-        motion_w=_columns(plant, others)[1][_rows(plant, motions)],
-        controller=controller.A,
+        stroke=driven.B,
+        disturbed=shaken.B,
+        reading=driven.C[:count],
+        reading_w=shaken.D[:count],
+        motion=driven.C[count:],
+        motion_f=driven.D[count:],
+        motion_w=shaken.D[count:],
+        controller=command.A,
         from_reference=of_error[0] + of_reference[0],
         from_pose=of_pose[0] - of_error[0],
-        from_applied=_columns(controller, tuple(f"applied.{name}" for name in given.actuators))[0],
-        command=controller.C[rows],
-        command_r=(of_error[1] + of_reference[1])[rows],
-        command_q=(of_pose[1] - of_error[1])[rows],
+        from_applied=_columns(command, tuple(f"applied.{name}" for name in given.actuators))[0],
+        command=command.C,
+        command_r=of_error[1] + of_reference[1],
+        command_q=of_pose[1] - of_error[1],
     )
 
 
@@ -82,7 +84,3 @@ def _columns(system: System, names: tuple[str, ...]) -> tuple[Array, Array]:
             found[0][:, column] = system.B[:, known.index(name)]
             found[1][:, column] = system.D[:, known.index(name)]
     return found[0], found[1]
-
-
-def _rows(system: System, names: tuple[str, ...]) -> list[int]:
-    return [system.output_names.index(name) for name in names]

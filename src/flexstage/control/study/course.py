@@ -13,7 +13,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
-from flexstage.base.record import INNER
+from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import TIME
 from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.study.setup import AxisAmplitudes, FileMotion, RasterMotion, SineMotion, SpiralMotion, StepMotion, TrajectorySetup
@@ -36,18 +36,27 @@ _MOST_SAMPLES = 5_000_000
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A trajectory by name, and its `duration` [s]; `moved` are the coordinates it is about, `plane` two to be shown in plan.
+    """A trajectory by name; `plane` are two coordinates to be shown in plan.
 
-    It does the same again every `period` [s], from when to when `repeats` [s] says (absent: it does not).
+    It does the same again every `period` [s], from when to when `repeats` [s] says (absent: it does not), and is cut at its `end` [s].
     """
 
     name: str
     trajectory: Annotated[Trajectory, INNER]
-    moved: tuple[str, ...]
-    duration: Annotated[float, TIME]
     plane: Annotated[tuple[str, str] | None, INNER] = None
     period: Annotated[float | None, INNER] = None
     repeats: Annotated[tuple[float, float] | None, INNER] = None
+    end: Annotated[float, INNER] = np.inf
+
+    @property
+    def moved(self) -> Annotated[tuple[str, ...], VIEW]:
+        """The coordinates that it moves."""
+        return self.trajectory.coordinates
+
+    @property
+    def duration(self) -> Annotated[float, TIME]:
+        """Its duration [s]."""
+        return min(self.trajectory.duration, self.end)
 
     @property
     def is_step(self) -> bool:
@@ -81,30 +90,30 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[C
     if isinstance(commanded, StepMotion):
         for name, size in (stated_motions(commanded.amplitude) or _default_motions(coordinates.names)).items():
             step = Step({name: size}, limits=_limits(commanded))
-            yield Course(name, step, (name,), step.duration)
+            yield Course(name, step)
     elif isinstance(commanded, RasterMotion):
         pair = (commanded.fast.value, commanded.slow.value)
         sizes = (commanded.length, commanded.pitch, commanded.lines, commanded.speed, commanded.acceleration)
         raster = Raster(*sizes, coordinates=pair)
-        yield Course("raster", raster, pair, raster.duration, pair, raster.period, raster.repeats)
+        yield Course("raster", raster, pair, raster.period, raster.repeats)
     elif isinstance(commanded, SpiralMotion):
         pair = (commanded.first.value, commanded.second.value)
         way = np.pi * commanded.radius**2 / commanded.pitch
         ramp = min(_RAMP, 0.2 * way / commanded.speed)
         spiral = Spiral(commanded.radius, commanded.pitch, commanded.speed, ramp, coordinates=pair)
-        yield Course("spiral", spiral, pair, spiral.duration, pair)
+        yield Course("spiral", spiral, pair)
     elif isinstance(commanded, SineMotion):
         sizes = stated_motions(commanded.amplitude) or dict([next(iter(_default_motions(coordinates.names).items()))])
         sine = Sine(sizes, commanded.frequency, fade=_FADED / commanded.frequency)
         period, end = 1.0 / commanded.frequency, commanded.periods / commanded.frequency
-        yield Course("sine", sine, tuple(sizes), end, period=period, repeats=(_FADED * period, end))
+        yield Course("sine", sine, None, period, (_FADED * period, end), end)
     else:
         yield _course_of_file(commanded)
 
 
 def _course_of_file(commanded: FileMotion) -> Course:
     table = from_file(commanded.file)
-    return Course("file", table, table.coordinates, table.duration, _plane(table.coordinates))
+    return Course("file", table, _plane(table.coordinates))
 
 
 def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -51,17 +52,16 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
     >>> round(found.ideal_map.error.at("z", "z").item(), 3), found.lost_motion_gains.largest < 1e-9
     (0.032, True)
     """
-    kinematics = given.kinematics
-    load = _load(given)
+    kinematics, load, (other, model) = given.kinematics, _load(given), _other_gains(given)
     carrying = lost_motion_compensation(lost, kinematics, load)
-    other, model = _other_gains(given)
+    error = partial(static_error, kinematics=kinematics, plant=lost.gain, deflection=load)
     return RestErrors(
-        ideal_map=static_error(ideal_compensation(kinematics), kinematics, lost.gain, load),
-        lost_motion_gains=static_error(lost_motion_compensation(lost, kinematics), kinematics, lost.gain, load),
-        other_gains=None if other is None else static_error(lost_motion_compensation(other, kinematics), kinematics, lost.gain, load),
+        ideal_map=error(ideal_compensation(kinematics)),
+        lost_motion_gains=error(lost_motion_compensation(lost, kinematics)),
+        other_gains=None if other is None else error(lost_motion_compensation(other, kinematics)),
         other_model=model,
         load=load,
-        load_left=static_error(carrying, kinematics, lost.gain, load).offset,
+        load_left=error(carrying).offset,
         load_strokes=carrying.offset,
     )
 

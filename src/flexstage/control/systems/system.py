@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated
@@ -254,13 +254,18 @@ def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple
     return select(closed, external, outputs)
 
 
+def block_matrices(parts: Sequence[System]) -> Iterator[Array]:
+    """A, B, C and D of systems side by side."""
+    return (scipy.linalg.block_diag(*(getattr(part, name) for part in parts)) for name in "ABCD")
+
+
 def _append(parts: tuple[System, ...]) -> System:
     steps = {part.step for part in parts}
     if len(steps) != 1:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
         require([Finding("systems", f"their steps differ: {shown}", "Sample them alike")])
     return System(
-        *(scipy.linalg.block_diag(*(getattr(part, name) for part in parts)) for name in "ABCD"),
+        *block_matrices(parts),
         inputs=tuple(channel for part in parts for channel in part.inputs),
         outputs=tuple(channel for part in parts for channel in part.outputs),
         step=parts[0].step,

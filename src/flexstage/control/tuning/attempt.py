@@ -367,7 +367,7 @@ def _strokes(seen: View, control: LQG, estimates: Array, frequencies: Array) -> 
     felt = (control.regulator @ estimates.reshape(states, -1).view(float)).view(complex).reshape(-1, points, width)
     fed = np.moveaxis(felt, 1, 0)
     turning = 2j * np.pi * frequencies
-    sums = seen.step / np.expm1(turning * seen.step)
+    sums = (step := seen.step or 0.0) / np.expm1(turning * step)
     entered = fed[..., :count] + (control.integral @ np.linalg.inv(seen.loops.sense)) * sums[:, None, None]
     return np.linalg.solve(np.eye(len(felt)) + fed[..., count:], entered)
 

@@ -24,7 +24,7 @@ _BELOW = 0.4
 """A derivative is filtered at ten times the crossing, which takes 5.7 deg, at most at 0.4 of the rate, where Tustin's rule keeps it."""
 
 
-def pi_laws(place: Place, step: float) -> list[PI]:
+def pi_laws(place: Place, step: float | None) -> list[PI]:
     """PI with |C g| = 1 at the place, sampled as they will be: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a.
 
     >>> [round(found.integral, 6) for found in pi_laws(Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), 1e-4)][:1]
@@ -34,9 +34,9 @@ def pi_laws(place: Place, step: float) -> list[PI]:
     return [PI(size * float(np.sin(angle)), size * turning * float(np.cos(angle))) for angle in _PI_ANGLES]
 
 
-def pid_laws(place: Place, step: float) -> list[PID]:
+def pid_laws(place: Place, step: float | None) -> list[PID]:
     """PI without a derivative, and two equal zeros at w/tan(a/2); filtered at ten times the frequency, at most 0.4 of the rate."""
-    corner = min(_FILTER * place.frequency, _BELOW / step)
+    corner = _FILTER * place.frequency if step is None else min(_FILTER * place.frequency, _BELOW / step)
     without = [PID(each.proportional, each.integral, 0.0, corner) for each in pi_laws(place, step)]
     return [*without, *(_pid(place, warped(place.frequency, step), float(angle), corner) for angle in _PID_ANGLES)]
 
@@ -49,7 +49,7 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
     return PID(unit.proportional * gain, gain, unit.derivative * gain, corner)
 
 
-def resonant_laws(place: Place, step: float) -> list[IntegralResonant]:
+def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
     """Laws of most damping first, then others of several feed-throughs and corners; the tracking gain k solves |k/(j w) - Q| = 1/|g|."""
     found: list[IntegralResonant] = []
     turning = warped(place.frequency, step)
@@ -62,7 +62,7 @@ def resonant_laws(place: Place, step: float) -> list[IntegralResonant]:
     ]
     for each in shapes:
         pole = each.gain * each.feedthrough
-        if pole >= np.pi / step:
+        if step is not None and pole >= np.pi / step:
             continue
         tracking = tracking_gain(place, turning, each.gain / (1j * turning + pole))
         if tracking is not None:

@@ -249,14 +249,15 @@ def last_mode(seen: View) -> float:
 def _lines(seen: View, fast: float) -> Array:
     """Even frequencies [Hz] from 0 to half the rate, so many that a step lasts some periods of the lowest mode."""
     rate = _RATE * max(last_mode(seen) * (2.0 if seen.loops.coordinates.forced else 1.0), fast)
-    rate = min(rate, 1.0 / seen.step)
+    rate = rate if seen.step is None else min(rate, 1.0 / seen.step)
     power = int(np.clip(np.ceil(np.log2(_PERIODS * rate / float(seen.modes[0]))), _LEAST_LINES, _MOST_LINES))
     return np.linspace(0.0, 0.5 * rate, 2 ** (power - 1) + 1)
 
 
 def _frequencies(seen: View, highest: float, places: tuple[float, ...]) -> Array:
     """Evenly in the logarithm, and densely around the modes and `places`; up to where all plants' own end below half the rate."""
-    top = 0.5 / seen.step * (0.999 / (1.0 + highest))
+    top = 20.0 * float(seen.modes[-1]) if seen.step is None else 0.5 / seen.step
+    top *= 0.999 / (1.0 + highest)
     lowest = 0.01 * float(seen.modes[0])
     plain = np.geomspace(lowest, top, max(_PLAIN, int(_PER_DECADE * np.log10(top / lowest))))
     single = np.append(True, np.diff(seen.modes) > 0.1 * seen.ratios[1:] * seen.modes[1:])
@@ -277,7 +278,7 @@ def _disturbed(seen: View, frequencies: Array, floor: Mapping[str, Spectrum]) ->
 
 def _heard(seen: View) -> Array:
     """Amplitude density (k,) of the gauges' noise and steps in each loop."""
-    step, plant = seen.step, seen.plant
+    step, plant = seen.step or 0.0, seen.plant
     sensors = [plant.hardware.sensors.get(name) for name in plant.gauges]
     squares = [0.0 if each is None else (each.noise_density or 0.0) ** 2 + each.resolution**2 * step / 6.0 for each in sensors]
     rows = seen.loops.sense @ plant.coordinates.pose
@@ -710,7 +711,7 @@ def _shape(seen: View, family: Family, loop: int, fast: float) -> Shape:
     corner = None
     if family == PID_FAMILY:
         corner = _CORNER * max(last_mode(seen), fast)
-        corner = min(corner, _OF_RATE / seen.step)
+        corner = corner if seen.step is None else min(corner, _OF_RATE / seen.step)
     slowest = max(_SLOWEST * _first_place(seen, loop), _SLOWEST_OF_FAST * fast)
     return Shape(len(_places(seen, loop)), seen.step, corner, 2.0 * np.pi * slowest)
 
@@ -720,7 +721,7 @@ def _places(seen: View, loop: int) -> list[float]:
     highest = _NEAR * last_mode(seen)
     found = [each.frequency for each in resonances(seen, loop) if each.frequency < highest]
     near = [each for each in found if each < _NEAR * found[0]][:_MOST_NOTCHES]
-    return [*near, _ABOVE * near[0]] if len(near) == 1 and _ABOVE * near[0] < _OF_RATE / seen.step else near
+    return [*near, _ABOVE * near[0]] if len(near) == 1 and (seen.step is None or _ABOVE * near[0] < _OF_RATE / seen.step) else near
 
 
 def _first_place(seen: View, loop: int) -> float:

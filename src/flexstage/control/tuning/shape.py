@@ -28,7 +28,7 @@ class Shape:
     """
 
     count: int
-    step: float
+    step: float | None
     corner: float | None = None
     slowest: float = 1e-6
 
@@ -60,7 +60,7 @@ class Shape:
         low[1] = np.log(self.slowest)
         for number in range(self.count):
             at = self.gains + 3 * number
-            highest = np.log(_BELOW / self.step)
+            highest = np.inf if self.step is None else np.log(_BELOW / self.step)
             low[at : at + 3] = start[at] - np.log(_MOVED), np.log(_DEEPEST), np.log(_NARROWEST)
             high[at : at + 3] = min(start[at] + np.log(_MOVED), highest), 0.0, np.log(_WIDEST)
         return low, high
@@ -107,10 +107,14 @@ class Shape:
 
     def _turned(self, frequencies: Array) -> tuple[Array, float]:
         """tan(pi f T), and what makes it omega: Tustin's rule; without samples omega itself."""
+        if self.step is None:
+            return 2.0 * np.pi * frequencies, 1.0
         return np.tan(np.pi * frequencies * self.step), 2.0 / self.step
 
     def _warp(self, frequency: float) -> float:
         """d ln q / d ln f of q = omega over a notch's, prewarped."""
+        if self.step is None:
+            return -1.0
         angle = 2.0 * np.pi * frequency * self.step
         return -angle / float(np.sin(angle))
 

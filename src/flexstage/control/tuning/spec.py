@@ -62,12 +62,9 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
     >>> [each.advice for each in spec_findings(TuningSpec(PI_FAMILY, rejection=500.0, delay_margin=1e-3), 1e-4)]
     ['Ask for less than 159.2 Hz, or 0.3183 ms']
     """
-    if step is None:
-        yield Finding("loop", "it is continuous, and controllers are tuned on samples", "State the sampling rate")
-        return
     if spec.bandwidth is not None and not 0.0 < spec.bandwidth < np.inf:
         yield Finding("bandwidth", f"it is {spec.bandwidth:g} Hz", "Give a positive frequency")
-    elif spec.bandwidth is not None and spec.bandwidth >= 0.5 / step:
+    elif spec.bandwidth is not None and step is not None and spec.bandwidth >= 0.5 / step:
         what = f"{spec.bandwidth:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
         yield Finding("bandwidth", what, f"Sample above {10.0 * spec.bandwidth:g} Hz, or ask for less")
     if not 1.0 < spec.sensitivity < np.inf:
@@ -76,7 +73,7 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
     if not 0.0 <= spec.spread < 0.5:
         yield Finding("spread", f"modes are to be off by up to {spec.spread:g}", "Give a ratio from 0 to 0.5, for example 0.02")
     delay = spec.delay_margin or 0.0
-    if spec.rejection is not None and spec.rejection >= 0.5 / step:
+    if spec.rejection is not None and step is not None and spec.rejection >= 0.5 / step:
         what = f"{spec.rejection:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
         yield Finding("controller.goal.rejection", what, "Ask for less, or sample faster")
     elif spec.rejection is not None and 2.0 * np.pi * spec.rejection * delay > 1.0:

@@ -185,10 +185,11 @@ def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
         trial, best = highest_bandwidth(seen, replace(spec, automatic=True))
         if trial is not None and best is not None and any(best.notches):
             found.append(f"with {_notch_places(best)} {_three_digits(trial.frequency)} Hz is reached")
-    acts = wanted if spec.family.notched else max(wanted, float(seen.modes[0]))
-    lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)
-    if lag > _NOTICED:
-        found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(acts)} Hz")
+    if seen.step is not None:
+        acts = wanted if spec.family.notched else max(wanted, float(seen.modes[0]))
+        lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)
+        if lag > _NOTICED:
+            found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(acts)} Hz")
     return "; ".join([*found, f"try {spec.family.others}, more damping, or a smaller spread of the modes"])
 
 

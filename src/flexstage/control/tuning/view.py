@@ -19,6 +19,8 @@ _PLAIN, _PER_DECADE = 400, 60
 """Frequencies evenly in the logarithm, and how many a decade has at least: 2 to 4 % apart."""
 _TURNED, _OF_RATE = 0.3, 0.4
 """Highest bandwidth: hold and delay take 0.3 of a turn there, 108 deg, more than laws make up for; at most this share of the rate."""
+_OF_HIGHEST = 0.25
+"""The same of a continuous loop, over the highest frequency that is looked at: 5 times the plant's last mode."""
 _LOWEST, _BELOW_FASTEST = 1e-3, 0.01
 """Lowest frequency over the first mode, and over the highest bandwidth at most; of a free body, whose mode is at 0 Hz, over both."""
 _AROUND = 21
@@ -48,9 +50,9 @@ class View:
     ratios: Array
 
     @property
-    def step(self) -> float:
+    def step(self) -> float | None:
         """Time between samples [s]; None for a continuous loop."""
-        return self.systems[0].step or np.nan
+        return self.systems[0].step
 
     @property
     def fastest(self) -> float:
@@ -119,13 +121,19 @@ def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
 
 
 def _fastest(plant: Plant) -> float:
-    step = plant.hardware.step or np.nan
+    step = plant.hardware.step
+    if step is None:
+        return _OF_HIGHEST * _highest(plant)
     return min(_TURNED / (plant.hardware.delay + 0.5 * step), _OF_RATE / step)
+
+
+def _highest(plant: Plant) -> float:
+    return 20.0 * float(plant.frequencies[-1]) if plant.hardware.rate is None else 0.5 * plant.hardware.rate
 
 
 def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
     """Evenly in the logarithm, and densely around every mode wherever it may lie."""
-    highest, slow = 0.5 * (plant.hardware.rate or np.nan), _BELOW_FASTEST * _fastest(plant)
+    highest, slow = _highest(plant), _BELOW_FASTEST * _fastest(plant)
     lowest = min(slow, _LOWEST * float(plant.frequencies[0] or slow))
     plain = np.geomspace(lowest, highest, max(_PLAIN, int(_PER_DECADE * np.log10(highest / lowest))))
     around = np.tan(np.linspace(-1.5, 1.5, _AROUND))
@@ -160,7 +168,7 @@ def resonances(seen: View, loop: int) -> tuple[Resonance, ...]:
     gains = np.abs(seen.own[0, :, loop])
     found: list[Resonance] = []
     for frequency, ratio in zip(seen.modes, seen.ratios, strict=True):
-        if frequency >= 0.5 / seen.step:
+        if seen.step is not None and frequency >= 0.5 / seen.step:
             continue
         own, *sides = np.interp(frequency * (1.0 + np.array([0.0, -8.0, 8.0]) * ratio), seen.frequencies, gains)
         if own > _STANDS_OUT * max(sides) and not (found and frequency < found[-1].frequency * (1.0 + _SAME)):

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
-import scipy
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised, filtered
@@ -20,7 +19,7 @@ from flexstage.control.export.code.program import ProgramSetting
 from flexstage.control.export.code.text import number, table
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.parts import Parts, parts
-from flexstage.control.systems.system import System, static
+from flexstage.control.systems.system import System, block_matrices, static
 from flexstage.models.linear.model import Channel
 
 
@@ -182,7 +181,7 @@ def _notches(law: Decentralised, step: float) -> System:
     groups = [[each.system(step) for each in group] for group in law.notches or ((),) * len(law.laws)]
     chains = [modal_form(reduce(filtered, group, static(np.eye(1), port, port, step))) for group in groups]
     names = tuple(Channel(f"loop{place}", "m") for place in range(len(chains)))
-    A, B, C, D = (scipy.linalg.block_diag(*(getattr(each, name) for each in chains)) for name in "ABCD")
+    A, B, C, D = block_matrices(chains)
     return System(A, B, C, D, names, names, step)
 
 

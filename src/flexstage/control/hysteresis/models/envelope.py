@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, freeze
+
+
+def freeze_rows(record: Any, *names: str) -> None:
+    """Make arrays of a frozen record (axes, m), and read-only."""
+    for name in names:
+        object.__setattr__(record, name, freeze(np.atleast_2d(np.asarray(getattr(record, name), dtype=float))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +35,7 @@ class Envelope:
 
     def __post_init__(self) -> None:
         """Make both (axes, m) and read-only, and check them."""
-        for name in ("knots", "values"):
-            object.__setattr__(self, name, freeze(np.atleast_2d(np.asarray(getattr(self, name), dtype=float))))
+        freeze_rows(self, "knots", "values")
         require(_findings(self))
         slopes = self.slopes
         object.__setattr__(self, "changes", np.concatenate([slopes[:, :1], np.diff(slopes)], axis=1))

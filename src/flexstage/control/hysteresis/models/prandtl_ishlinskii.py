@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.number import Array, freeze
-from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope, freeze_rows
 from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 
@@ -43,8 +43,7 @@ class PrandtlIshlinskii(Hysteresis):
 
     def __post_init__(self) -> None:
         """Make the arrays (axes, n) and read-only, and check them."""
-        for name in ("thresholds", "weights"):
-            object.__setattr__(self, name, freeze(np.atleast_2d(np.asarray(getattr(self, name), dtype=float))))
+        freeze_rows(self, "thresholds", "weights")
         require(_findings(self))
 
     @property
