@@ -16,6 +16,7 @@ from flexstage.analysis.loaded import stability as stabilities
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import DesignError
+from flexstage.base.session import SESSION
 from flexstage.base.sparse import Rows, Sparse
 from flexstage.beams.compliance import law
 from flexstage.cases.parallelogram import parallelogram
@@ -174,7 +175,7 @@ def test_a_chain_of_notches_deforms_least_as_with_dense_matrices():
     stage = replace(stage, parts={"rod": Notch("steel", 1e-3, 0.01, Circular(0.003))}, links=links)
     found = ideals.ideal(stage)
     with patch.object(ideals, "LARGE", count + 1):
-        ideals._kept.cache_clear()
+        SESSION.clear()
         expected = ideals.ideal(stage)
     assert np.max(np.abs(found.bodies - expected.bodies)) <= 1e-10 * np.max(np.abs(expected.bodies))
 

@@ -26,7 +26,7 @@ from flexstage.solid.fea.jobs.worker import Job
 from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.fea.solver.component import components
 from flexstage.solid.fea.solver.superelement import Skin, Superelement
-from flexstage.solid.results.plan import Phase, Plan, reduction_plan, verification_plan, work_ahead
+from flexstage.solid.results.plan import Plan, reduction_plan, verification_plan, work_ahead
 from flexstage.solid.results.read import read_solid, remember, solids
 from flexstage.solid.results.resolution import Converged, Resolution, converge
 from flexstage.solid.results.stage import solid_stage
@@ -246,9 +246,9 @@ def test_a_solid_is_worked_in_one_queue_too(tmp_path: Path) -> None:
     """Both orders of every component; `bare` ones are others, without modes, but give the same figures at rest."""
     stage, ways = propped(6e-3, 7e-3), Ways(Cache(tmp_path))
     whole, bare = (reduction_plan([stage], Resolution(order=2), ways, bare=bare) for bare in (False, True))
-    assert [phase.name for phase in whole.phases] == [phase.name for phase in bare.phases] == ["order 1", "order 2"]
-    assert {job.reduction.modes for phase in bare.phases for job in phase.todo if isinstance(job, Reduce)} == {0}
-    assert whole.needed == {job.key for phase in whole.phases for job in phase.todo}
+    assert list(whole.phases) == list(bare.phases) == ["order 1", "order 2"]
+    assert {job.reduction.modes for job in bare.jobs if isinstance(job, Reduce)} == {0}
+    assert whole.needed == {job.key for job in whole.jobs}
     assert not whole.needed & bare.needed
 
 
@@ -259,7 +259,7 @@ def test_in_python_too_unless_it_is_told_how(monkeypatch: pytest.MonkeyPatch) ->
         pools.append(ways.pool)
         raise DesignError((Finding("left", "was not worked", "Work it"),))
 
-    monkeypatch.setattr("flexstage.solid.results.verification.verification_plan", lambda *_: Plan((), lanes=1))
+    monkeypatch.setattr("flexstage.solid.results.verification.verification_plan", lambda *_: Plan({}, lanes=1))
     monkeypatch.setattr("flexstage.solid.results.verification.work_ahead", work_ahead)
     with pytest.raises(DesignError, match="was not worked"):
         fs.solid.verify(small())
@@ -271,7 +271,7 @@ def test_in_python_too_unless_it_is_told_how(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = (replace(job, key=key) for key, job in zip(("stage", "unit"), reduce_jobs(components(small()), OF_SMALL), strict=False))
-    plan = Plan((Phase("order 3", {}, todo=(first, second)),), lanes=1, needed=frozenset({"stage"}))
+    plan = Plan({"order 3": (first, second)}, lanes=1, needed=frozenset({"stage"}))
 
     def work_all(jobs: list[Reduce], done: Callable[[Reduce, Superelement], None], *_: object) -> None:
         for job in jobs:

@@ -82,7 +82,7 @@ def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
 
     >>> from types import SimpleNamespace as Of
     >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))
-    >>> pieces = (Of(name="B/tip.block", body="B/tip"), Of(name="B/front", body=None))
+    >>> pieces = (Of(owner="B/tip"), Of(owner="B/front"))
     >>> [(name, at.tolist()) for name, at in piece_vertices(Of(element=Of(skin=skin), component=Of(pieces=pieces)))]
     [('B/tip', [0, 1, 2]), ('B/front', [1, 2, 3])]
     """
