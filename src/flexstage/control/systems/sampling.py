@@ -70,8 +70,12 @@ def first_order_hold(system: System, step: float) -> System:
     ([[0.1]], [[0.05]])
     """
     require(_findings(system, step, 0.0))
-    A, B, C, D, _ = scipy.signal.cont2discrete((system.A, system.B, system.C, system.D), step, "foh")
-    return replace(system, A=A, B=B, C=C, D=D, step=step)
+    size, width = system.B.shape
+    whole = np.zeros((size + 2 * width, size + 2 * width))
+    whole[:size, :size], whole[:size, size : size + width] = system.A * step, system.B * step
+    whole[size : size + width, size + width :] = np.eye(width)
+    A, gamma, ramp = np.split(scipy.linalg.expm(whole)[:size], [size, size + width], axis=1)
+    return replace(system, A=A, B=gamma - ramp + A @ ramp, D=system.D + system.C @ ramp, step=step)
 
 
 def split_delay(samples: float) -> tuple[int, float]:
@@ -84,8 +88,11 @@ def split_delay(samples: float) -> tuple[int, float]:
 
 def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
     """e^{At} and int_0^t e^{As} ds B."""
-    A, B, *_ = scipy.signal.cont2discrete((system.A, system.B, system.C, system.D), time)
-    return A, B
+    size, width = system.B.shape
+    whole = np.zeros((size + width, size + width))
+    whole[:size, :size], whole[:size, size:] = system.A, system.B
+    found = scipy.linalg.expm(whole * time)
+    return found[:size, :size], found[:size, size:]
 
 
 def bilinear(system: System, step: float, prewarp: float | None = None) -> System:
