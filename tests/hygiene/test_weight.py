@@ -19,11 +19,11 @@ CEILINGS = {
     "show": 62_400,
     "solid": 75_600,
     "experiment": 97_600,
-    "control": 151_600,
+    "control": 151_700,
     "studies": 49_700,
     "apps": 34_400,
     ".": 400,
-    "all": 777_300,
+    "all": 777_500,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
