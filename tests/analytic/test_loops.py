@@ -92,6 +92,18 @@ def test_gain_and_phase_of_a_disk():
     assert np.allclose([skewed.gain_low, skewed.gain_high], [2.0 / 3.0, 2.0])
 
 
+@pytest.mark.parametrize("skew", [0.0, 1.0, -1.0])
+def test_two_loops_that_are_one(skew):
+    """A factor on either side of one loop: (1 + a)^2/(1 - a)^2 = (1 + b)/(1 - b) with b = 2a/(1 + a^2), so that |b| <= 2|a|/(1 - |a|^2)."""
+    plain = _closed([25.0], [1.0, 10.0, 10.0, 10.0])
+    both, one = disk_margins(plain, None, skew), disk_margin(sensitivity(open_at(plain, LoopBreak.POSE)), skew)
+    assert both.covered
+    assert both.reached < one.value
+    if skew == 0.0:
+        half = 0.5 * one.value
+        assert 2.0 * (np.sqrt(1.0 + half**2) - 1.0) / half < both.reached < 2.0 * (1.0 - np.sqrt(1.0 - half**2)) / half
+
+
 def _integrator(rate, gain, delay):
     """u' = gain e on a plant of gain 1, the delay held exactly."""
     bare = _bare(np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), rate, delay)

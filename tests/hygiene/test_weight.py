@@ -19,7 +19,7 @@ CEILINGS = {
     "show": 62_400,
     "solid": 75_600,
     "experiment": 97_600,
-    "control": 151_700,
+    "control": 151_800,
     "studies": 49_700,
     "apps": 34_400,
     ".": 400,

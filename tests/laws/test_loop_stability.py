@@ -18,7 +18,7 @@ from flexstage.control.robustness.stability_margins import bandwidths, crosstalk
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from flexstage.control.study.study import loop_study
 from flexstage.control.systems import norm
-from flexstage.control.systems.closed import LoopBreak, loop, open_at
+from flexstage.control.systems.closed import LoopBreak, loop, open_at, open_everywhere
 from flexstage.control.systems.curves import sensitivity
 from flexstage.control.systems.system import select
 from tests.conftest import examples
@@ -125,7 +125,7 @@ def test_sensitivities_add_up(seed, rate):
     loops = {cut: open_at(closed, cut).transfer(at) for cut in LoopBreak}
     assert np.allclose(response["error"] @ (identity + loops[LoopBreak.POSE]), identity, atol=1e-8)
     assert np.allclose(sensitivity(open_at(closed, LoopBreak.POSE)).transfer(at), response["error"], rtol=1e-7, atol=1e-9)
-    determinants = [np.linalg.det(np.eye(each.shape[-1]) + each) for each in loops.values()]
+    determinants = [np.linalg.det(np.eye(each.shape[-1]) + each) for each in (*loops.values(), open_everywhere(closed).transfer(at))]
     for other in determinants[1:]:
         assert np.allclose(other, determinants[0], rtol=1e-7)
 
@@ -199,6 +199,8 @@ def test_disk_margins_hold(seed, rate):
             factors = random.uniform(low, high, len(open_loop.D))
             inverse = np.linalg.inv(np.eye(len(factors)) + open_loop.D * factors)
             assert replace(open_loop, A=open_loop.A - (open_loop.B * factors) @ inverse @ open_loop.C).growth < 1e-9
+    both = disk_margins(closed, None)
+    assert both.guaranteed <= min(disk_margins(closed, cut).reached for cut in LoopBreak)
 
 
 @given(SEEDS, st.sampled_from([1000.0, None]))

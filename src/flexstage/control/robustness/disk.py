@@ -14,7 +14,7 @@ from flexstage.base.record import INNER, Heading, Layout
 from flexstage.base.units.quantity import ANGLE, FREQUENCY
 from flexstage.control.robustness.singular import balance, lower_bound, upper_bound
 from flexstage.control.robustness.stability import require_stable
-from flexstage.control.systems.closed import Loop, LoopBreak, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, open_at, open_everywhere
 from flexstage.control.systems.curves import dense_frequencies, sensitivity
 from flexstage.control.systems.norm import Plane, level_crossings, peak, to_plane
 from flexstage.control.systems.system import System
@@ -83,8 +83,8 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
     return Edge(1.0 / found.value, found.frequency)
 
 
-def disk_margins(closed: Loop, cut: LoopBreak, skew: float = 0.0) -> DiskMargin:
-    """The disk margin of all loops at once: at the poses or at the commands.
+def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
+    """The disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both ends together.
 
     alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. From above mu <= min over
     diagonal D of sigma(D M D^-1), from below mu >= max over phases U of rho(U M). The bound from above holds at all frequencies: for each D
@@ -98,7 +98,7 @@ def disk_margins(closed: Loop, cut: LoopBreak, skew: float = 0.0) -> DiskMargin:
     (True, True, True)
     """
     require_stable(closed, "disk margins")
-    open_loop = open_at(closed, cut)
+    open_loop = open_everywhere(closed) if cut is None else open_at(closed, cut)
     moved = _shift(sensitivity(open_loop), skew)
     frequencies = dense_frequencies(moved.poles, moved.step)
     lowest, highest, place = _search_bounds(moved, frequencies)

@@ -123,6 +123,17 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     return _loop_cut(closed, outer.values() if channel is None else [outer[channel]])
 
 
+def open_everywhere(closed: Loop) -> System:
+    """The loop cut open at all poses and all commands at once, in this order: for factors at both its ends together.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = open_everywhere(integral_loop())
+    >>> found.input_names, found.output_names
+    (('cut.x', 'cut.B'), ('pose.x', 'command.B'))
+    """
+    return _loop_cut(closed, [*LoopBreak.POSE.channels(closed.plant), *LoopBreak.COMMAND.channels(closed.plant)])
+
+
 def _loop_cut(closed: Loop, chosen: Iterable[Channel]) -> System:
     """Open at these signals, the sign turned: what comes back is subtracted."""
     given = closed.plant
