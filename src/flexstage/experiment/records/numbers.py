@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
@@ -18,9 +18,9 @@ _SEGMENT = 1024
 _KEPT = 2048
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Numbers:
-    """What the samples of one channel are like, block by block as they are added.
+    """Statistics of the samples of one channel up to a block.
 
     `broken` of `count` samples are not numbers, the first is number `first_broken`. From sample `still_from` the value stays `still_at` for
     `still` samples, longer than anywhere else. `lows` and `highs` are enough of the extremes to tell a pile from a tail, `step` is the
@@ -42,37 +42,45 @@ class Numbers:
     _last: Annotated[float, INNER] = np.nan
     _run: Annotated[int, INNER] = 0
 
-    def add(self, values: Array) -> None:
-        """Add a block of samples."""
+    def add(self, values: Array) -> Numbers:
+        """Statistics with another block of samples."""
         finite = np.isfinite(values)
         held = values[finite]
-        self._add_moments(held)
-        self._add_runs(values)
-        if self.first_broken < 0 and len(held) < len(values):
-            self.first_broken = self.count + int(np.argmin(finite))
-        self.lows, self.highs = _least(np.append(self.lows, held)), -_least(-np.append(self.highs, held))
-        self.count, self.broken = self.count + len(values), self.broken + len(values) - len(held)
-
-    def _add_moments(self, held: Array) -> None:
+        first = self.count + int(np.argmin(finite)) if self.first_broken < 0 and len(held) < len(values) else self.first_broken
         before, total = self.count - self.broken, max(1, self.count - self.broken + len(held))
         mean = float(np.sum(held)) / max(1, len(held))
         shift = (mean - self.mean) * bool(len(held))
-        self.square += float(np.sum((held - mean) ** 2)) + shift * before * shift * len(held) / total
-        self.mean += shift * len(held) / total
+        return replace(
+            self._with_runs(values),
+            count=self.count + len(values),
+            broken=self.broken + len(values) - len(held),
+            first_broken=first,
+            mean=self.mean + shift * len(held) / total,
+            square=self.square + float(np.sum((held - mean) ** 2)) + shift * before * shift * len(held) / total,
+            lows=_least(np.append(self.lows, held)),
+            highs=-_least(-np.append(self.highs, held)),
+        )
 
-    def _add_runs(self, values: Array) -> None:
+    def _with_runs(self, values: Array) -> Numbers:
         steps = np.abs(np.diff(np.append(self._last, values)))
         equal = values[steps == 0.0]
-        self.pairs = min(self.pairs[0], float(equal.min(initial=np.inf))), max(self.pairs[1], float(equal.max(initial=-np.inf)))
         moves = np.flatnonzero(~(steps == 0.0))
-        self.step = min(self.step, float(steps[moves][np.isfinite(steps[moves])].min(initial=np.inf)))
         starts = np.append(-self._run, moves)
         lengths = np.diff(np.append(starts, len(values)))
         at = int(np.argmax(lengths))
+        still = self.still, self.still_from, self.still_at
         if lengths[at] > self.still:
-            self.still, self.still_from = int(lengths[at]), self.count + int(starts[at])
-            self.still_at = float(values[max(0, int(starts[at]))])
-        self._run, self._last = int(lengths[-1]), float(values[-1])
+            still = int(lengths[at]), self.count + int(starts[at]), float(values[max(0, int(starts[at]))])
+        return replace(
+            self,
+            pairs=(min(self.pairs[0], float(equal.min(initial=np.inf))), max(self.pairs[1], float(equal.max(initial=-np.inf)))),
+            step=min(self.step, float(steps[moves][np.isfinite(steps[moves])].min(initial=np.inf))),
+            still=still[0],
+            still_from=still[1],
+            still_at=still[2],
+            _last=float(values[-1]),
+            _run=int(lengths[-1]),
+        )
 
     @property
     def rms(self) -> Annotated[float, VIEW]:
@@ -116,13 +124,12 @@ def gather(record: Record) -> RecordNumbers:
     inputs = [number for number, channel in enumerate(record.channels) if channel.role is Role.INPUT]
     size = min(_SEGMENT, 1 << (max(2, record.length // (16 * max(1, len(inputs)))).bit_length() - 1))
     spectra, segments = np.zeros((size // 2 + 1, len(inputs), len(inputs)), dtype=complex), 0
-    channels = tuple(Numbers() for _ in record.channels)
+    channels = (Numbers(),) * len(record.channels)
     seen = begun = 0
     longest = (0, 0)
     with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
         for block in record.blocks(max(1, BLOCK // len(channels) // _SEGMENT) * _SEGMENT):
-            for numbers, values in zip(channels, block.T, strict=True):
-                numbers.add(values)
+            channels = tuple(numbers.add(values) for numbers, values in zip(channels, block.T, strict=True))
             stops = np.append(np.flatnonzero(~np.isfinite(block).all(axis=1)), len(block)) + seen
             starts = np.append(begun, stops[:-1] + 1)
             stretches = zip(starts.tolist(), stops.tolist(), strict=True)
