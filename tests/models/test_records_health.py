@@ -12,6 +12,7 @@ from flexstage.base.finding import DesignError
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.pipeline import usable_measurement as sound_records
 from flexstage.experiment.records.health import RecordRequirements, examine, responses_findings, usable_record
+from flexstage.experiment.records.numbers import Numbers
 from flexstage.experiment.records.options import FaultTolerance
 from flexstage.experiment.records.record import Channel, Record, Responses, Role, in_memory
 from tests.conftest import FULL
@@ -284,3 +285,21 @@ def test_a_frequency_that_stands_twice_is_told_by_its_lines() -> None:
     frequencies = np.array([1.0, 2.0, 2.0, 3.0])
     twice = Responses(frequencies, CHANNELS[3:4], CHANNELS[:1], np.ones((4, 1, 1), complex))
     assert [fault.finding.what for fault in responses_findings(twice)] == ["its frequencies do not rise: 2 Hz stands twice, lines 2 and 3"]
+
+
+def test_statistics_do_not_depend_on_blocks() -> None:
+    """Of drifting samples with gaps, steps and stretches that stand still: block by block as at once, and as numpy has them."""
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        values = np.round(np.cumsum(random.normal(size=400)) + 50.0, 1)
+        values[100:160] = values[100]
+        values[random.integers(0, 400, 5)] = np.nan
+        cuts = np.sort(random.choice(np.arange(1, 400), 6, replace=False))
+        parts = Numbers()
+        for block in np.split(values, cuts):
+            parts = parts.add(block)
+        whole, known = Numbers().add(values), values[np.isfinite(values)]
+        assert (parts.mean, parts.rms) == pytest.approx((np.mean(known), np.std(known)), rel=1e-12)
+        assert (parts.low, parts.high, parts.count, parts.broken) == (known.min(), known.max(), 400, 400 - len(known))
+        for name in ("pairs", "step", "still", "still_from", "still_at", "first_broken"):
+            assert getattr(parts, name) == getattr(whole, name), name
