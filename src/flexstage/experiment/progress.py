@@ -35,7 +35,7 @@ def followed(told: Told) -> Generator[None]:
 
 @contextmanager
 def part(start: float, stop: float, text: str = "") -> Generator[None]:
-    """Count what is computed within as the part of the whole from the share `start` to `stop`; `text` says what it is."""
+    """Count the work within as the part of the whole from `start` to `stop` (shares); `text` describes it."""
     outer = _FOLLOWER.get()
     with followed(lambda own, share: outer(text or own, start + share * (stop - start))):
         yield

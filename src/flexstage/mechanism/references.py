@@ -1,4 +1,4 @@
-"""Names by which the entries of a description refer to one another, told by the fields that hold them."""
+"""References between the entries of a description, found by the fields that hold names."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ Spans: TypeAlias = tuple[tuple[int, int], ...]
 
 @dataclass(frozen=True, eq=False)
 class Variable:
-    """An array of a file: its name (a path), its shape, the function that reads a part of it, what the file says beside it."""
+    """An array of a file: its name (a path), its shape, the function that reads a part of it, and its attributes."""
 
     name: str
     shape: tuple[int, ...]

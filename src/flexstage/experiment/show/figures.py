@@ -190,7 +190,7 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
 
 
 def _by_output(titles: Sequence[str], band: tuple[float, float], draw: Callable[[Any, int], None], height: float) -> Any:
-    """A figure with a panel so high [in] for each of the first outputs, three abreast; the legend of the first panel stands above all."""
+    """A figure with a panel of a height [in] for each of the first outputs, three in a row, and one legend above all."""
     count = min(LARGEST, len(titles))
     across = min(3, count)
     down = -(-count // across)

@@ -166,7 +166,7 @@ class _Names:
         return self.body(key) if section == "bodies" else f"{self.name}/{key}"
 
     def inside(self, section: str, item: Any) -> Any:
-        """An entry of a section, what it refers to under its new names."""
+        """An entry of a section, with its references under their new names."""
         own = self.drawn if section == "units" else ()
 
         def change(field_name: str, text: str) -> str:

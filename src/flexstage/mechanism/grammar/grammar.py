@@ -252,7 +252,7 @@ class RecordNode(Node):
         return _slots(self.record)
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The record, of what stands in the table, and defaults."""
+        """The record of the entries of the table, and defaults."""
         if not _is_table(raw, where, reader):
             return BAD
         raw = _strip_tags(raw, where, reader)

@@ -179,7 +179,7 @@ def _with_likes(reader: Reader, raw: dict[str, Any]) -> dict[str, Any]:
 
 
 def _with_like(reader: Reader, section: Section, where: str, entry: Any) -> Any:
-    """An entry with what its `like` brings along, overridden by what it states; what an unknown one would bring is not missed besides."""
+    """An entry merged over the entry that `like` names. For an unknown one, missing keys are not reported in addition."""
     own_kind = getattr(section.record, "kind", None)
     if not isinstance(entry, dict) or LIKE not in entry or entry.get("kind", own_kind) != own_kind:
         return entry

@@ -24,7 +24,7 @@ from flexstage.experiment.records.record import Record, Responses
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
 OWN = "flexstage "
-"""What begins the comment of files written here: a JSON object of what the documented form says beside the arrays."""
+"""First words of the comment in files written here; a JSON object of the attributes follows."""
 _PART = re.compile(r"(?:(?P<name>.+?)[ _])?(?P<part>re|im|coherence|mag|magnitude|amplitude|gain|phase)", re.IGNORECASE)
 _MAGNITUDES = ("mag", "amplitude", "gain")
 _RECTANGULAR, _POLAR = ("re", "im"), ("magnitude", "phase")

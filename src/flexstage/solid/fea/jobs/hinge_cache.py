@@ -55,7 +55,7 @@ class HingeJob(StoredJob):
         return Finding(self.name, what, "Free memory, or let it have more")
 
     def work(self, call: Call) -> HingeSolid:
-        """Compute it. What is refused is told by the name it has for the user."""
+        """Compute the 6x6; errors name the hinge as the user does."""
         from flexstage.solid.fea.hinges.hinge import hinge_compliance
 
         try:
