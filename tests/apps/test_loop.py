@@ -310,7 +310,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
     (
         ("--fea", "--at", "platform.x=1 mm", "--model", "mapped"),
-        ("--fea: finite elements are of the stage as drawn", "--fea: --model mapped asks for another"),
+        ("--fea: finite elements need the nominal stage", "--fea: contradicts --model mapped"),
     ),
     (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
     (("--controller", "pidd"), ("--controller", "pi, pid, resonant, lqg, none")),
