@@ -230,7 +230,9 @@ BAD = {
     "feed-through must be positive (got -2)": lambda: IntegralResonant(100.0, -2.0),
     "its damping is 0": lambda: resonant_law(100.0, 0.0),
     "1 laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(),)),
-    "wrong shape (got (1, 1), expected": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(), PI()), (), np.eye(1)),
+    "wrong shape (got (1, 1), expected": lambda: Decentralised(
+        platform_loops(coordinates(ideal(case("xy-stage")))), (PI(), PI()), (), np.eye(1)
+    ),
     "wrong number of modes (got 3, expected 2: x, y)": lambda: modal_loops(coordinates(ideal(case("xy-stage"))), np.eye(6)[:, :3]),
     "not independent": lambda: modal_loops(coordinates(ideal(case("xy-stage"))), np.ones((6, 2))),
 }

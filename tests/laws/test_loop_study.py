@@ -354,7 +354,7 @@ def test_a_plant_of_finite_elements_is_taken_as_it_is():
     found = loop_study(stage, asked, solid=FeaModes(platform_modes(stage, model), model, 3))
     assert np.array_equal(found.closed.system.A, drawn.closed.system.A)
     assert (drawn.model_name, found.model_name) == ("lumped", "solid, elements of order 3")
-    with pytest.raises(DesignError, match="tells no forces"):
+    with pytest.raises(DesignError, match="provides no forces"):
         loop_study(stage, replace(asked, damping=DampingSetup()), solid=FeaModes(platform_modes(stage, mapped(stage)), mapped(stage), 3))
 
 

@@ -109,7 +109,7 @@ def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, def
     True
     """
     if plant.columns != given.gains.rows or len(plant.rows) != len(COMPONENTS):
-        what = f"other actuators than the gains (got {len(plant.rows)} motions by {', '.join(plant.columns)}, expected {', '.join(given.gains.rows)})"
+        what = f"other actuators than the gains (got {', '.join(plant.columns)}, expected {', '.join(given.gains.rows)})"
         raise refuse("plant", what, "Use the platform's twist by these actuators")
     names, length = kinematics.coordinates, kinematics.first_length
     reached = plant.values @ given.gains.values

@@ -1,4 +1,4 @@
-"""What every hysteresis offers to a loop: a start, a step and a run."""
+"""Protocol of hysteresis models in a loop: a start, a step and a run."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from flexstage.base.number import Array, freeze
 
 
 class Hysteresis(Protocol):
-    """Hystereses of `axes` actuators side by side, rate independent: the output depends on the order of the inputs, not on their times.
+    """Rate-independent hysteresis of `axes` actuators: the output depends on the order of the inputs, not on their times.
 
-    Between two samples the input is taken to move monotonically, so that one update a sample is exact where a converter holds the
-    input. Inputs and outputs are (axes,), plants take volts and give metres of free stroke; the form of the state is the model's own.
+    The input is monotonic between two samples, so that one update per sample is exact behind a hold. Inputs and outputs are (axes,); plants
+    map volts to metres of free stroke. The state's form belongs to the model.
     """
 
     @property
@@ -24,11 +24,11 @@ class Hysteresis(Protocol):
         ...
 
     def start(self, value: Array) -> Array:
-        """The state after a monotone travel from the state of rest to the input `value` (axes,)."""
+        """State after a monotonic path from the initial state to the input `value` (axes,)."""
         ...
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next state and the output (axes,) for the next input (axes,); `state` itself is left as it is.
+        """Return the next state and the output (axes,) for the next input (axes,); `state` is not modified.
 
         >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
         >>> (1e6 * PrandtlIshlinskii([0.0], [2e-7]).step(np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
