@@ -150,7 +150,7 @@ def test_no_rate_independent_hysteresis_is_refused():
     """A stroke that wanders apart from the volts is fitted by no model."""
     volts = legs(INWARD)
     wander = 60e-6 * np.sin(0.026 * np.arange(len(volts)))
-    assert "by" in refused(volts, 1.5e-7 * volts + wander)
+    assert "the hysteresis is rate dependent" in refused(volts, 1.5e-7 * volts + wander)
 
 
 def test_warnings_say_what_a_record_does_not_show():
@@ -270,7 +270,7 @@ def test_a_stacks_loop_is_scaled_to_others():
 
 def test_stacks_that_are_none_are_refused():
     model = PrandtlIshlinskii([0.0], [1e-7])
-    with pytest.raises(DesignError, match="stack 1: 5 V to 5 V and a stroke of 0 m are none"):
+    with pytest.raises(DesignError, match=r"stack 1: no stack range \(got 5 V to 5 V"):
         scale_to_stacks(model, RANGE, Stacks(np.array([0.0, 5.0]), np.array([1.0, 5.0]), np.array([1e-4, 0.0])))
     with pytest.raises(DesignError, match="has 2 axes"):
         scale_to_stacks(PrandtlIshlinskii(np.zeros((2, 1)), np.ones((2, 1))), RANGE, Stacks(np.zeros(1), np.ones(1), np.ones(1)))

@@ -96,7 +96,7 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
         write(tmp_path / f"{name}.csv", record)
     assert "once.csv: volts: the voltage runs from 0 V to 1000 V without reversal" in ended_badly(recorded, "once.csv")
     assert "2 are in a length" in ended_badly(recorded, "three.csv")
-    assert "dead.csv: stroke: all its samples are 0: the channel is dead" in ended_badly(recorded, "dead.csv")
+    assert "dead.csv: stroke: all samples equal 0: the channel is dead" in ended_badly(recorded, "dead.csv")
     assert "there is no channel w" in ended_badly(recorded, "stack.csv", "--stroke", "w")
     exchanged = ended_badly(recorded, "stack.csv", "--volts", "y", "--stroke", "u")
     assert "y is in um, which is not volts" in exchanged

@@ -318,7 +318,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--seconds", "-1"), ("seconds", "greater than 0")),
     (("--seconds", "1e9"), ("seconds", "samples")),
     (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),
-    (("--export", "path.csv"), ("--export path.csv", "nothing but the trajectory itself")),
+    (("--export", "path.csv"), ("--export path.csv", "the command equals the trajectory")),
     (("--export", "path.csv", "--tracking", "inverse"), ("--export path.csv", "several paths")),
     (("--setup", "nowhere.toml"), ("nowhere.toml", "no such file")),
     (("--json", "nowhere/loop.json"), ("nowhere/loop.json cannot be written",)),

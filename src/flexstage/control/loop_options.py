@@ -51,7 +51,7 @@ _UNITS = {"bandwidth": "Hz", "resistance": "ohm", "current": "A"}
 
 @dataclass(frozen=True)
 class LoopOptions:
-    """The set-up of a loop as the command line states it."""
+    """Loop set-up from the command line."""
 
     setup: Setup = None
     controller: Annotated[
@@ -94,7 +94,9 @@ class LoopOptions:
         list[str] | None,
         text_option("--amplitude", "AXIS=VALUE", "Amplitude of a step or sine, e.g. x=1um. Repeatable. Default: 1 um, 10 urad, all axes."),
     ] = None
-    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until all has settled.")] = None
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until all axes have settled.")] = (
+        None
+    )
     feedforward: Annotated[
         list[str] | None,
         text_option(

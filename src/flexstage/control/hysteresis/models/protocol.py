@@ -37,7 +37,7 @@ class Hysteresis(Protocol):
         ...
 
     def run(self, values: Array, state: Array | None = None) -> Array:
-        """Outputs for inputs (k, axes), or (k,) of a single actuator, from `state`, or else from rest.
+        """Simulate outputs for inputs (k, axes), or (k,) of a single actuator, from `state` (default: the initial state).
 
         Raises `DesignError` for inputs of another shape and for numbers that are not finite.
 
@@ -49,7 +49,7 @@ class Hysteresis(Protocol):
         if values.shape[1:] != (self.axes,) and not (values.ndim == 1 and self.axes == 1):
             raise refuse("hysteresis", f"inputs are {values.shape} for {self.axes} axes", f"Give (samples, {self.axes})")
         if not np.all(np.isfinite(values)):
-            raise refuse("hysteresis", "an input is not finite", "Mend the inputs")
+            raise refuse("hysteresis", "an input is not finite", "Correct the inputs")
         rows = values.reshape(len(values), self.axes)
         found = np.empty_like(rows)
         for place, value in enumerate(rows):
@@ -58,7 +58,7 @@ class Hysteresis(Protocol):
 
 
 def freeze_by_axis(model: Any) -> None:
-    """Make all numbers of a dataclass (axes,) and read-only.
+    """Convert all numbers of a dataclass to (axes,), read-only.
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import BoucWen
     >>> BoucWen(np.array([1e-7, 2e-7]), 4e-8, 4e-3, 2e-3).lag.tolist()
