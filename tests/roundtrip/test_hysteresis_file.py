@@ -81,7 +81,7 @@ def test_mistakes_are_named(text, words):
 
 
 def test_a_file_holds_one_stack():
-    with pytest.raises(DesignError, match="too many axes .got 2"):
+    with pytest.raises(DesignError, match=r"too many axes .got 2"):
         stack_hysteresis(PrandtlIshlinskii(np.zeros((2, 1)), np.array([[1e-7], [2e-7]])))
 
 
