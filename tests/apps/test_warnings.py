@@ -160,7 +160,7 @@ REPORTED = {
     "stroke stage.toml --drive platform.y --steps 2": "122 mm wide, the envelope 1 mm",
     "buckle stage.toml --scale-load platform.fx=-1kN": "122 mm wide, the envelope 1 mm",
     "misalign stage.toml": "122 mm wide, the envelope 1 mm",
-    "loop stage.toml --bandwidth 100Hz --hysteresis 15%": "margins, noise and poles are those of stacks without it",
+    "loop stage.toml --bandwidth 100Hz --hysteresis 15%": "margins, noise and poles exclude hysteresis",
 }
 
 AT_LENGTH = {"sweep", "misalign", "optimise", "loop"}

@@ -268,7 +268,7 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
     assert found.noise.changes[0] < 0.01
     assert found.resting is not None
     assert 2.0 * found.noise.rms[0] < found.resting.low[0] < found.resting.rms[0] < found.resting.high[0] < 5e-10
-    assert any("rounding is slow" in each.what for each in found.warnings)
+    assert any("rounding is not white" in each.what for each in found.warnings)
     table = noise_table(found)
     assert [column.head for column in table.columns] == [
         "coordinate",
