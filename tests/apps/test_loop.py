@@ -225,8 +225,8 @@ def test_the_header_is_an_output_too(guide: Command, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        ("0,0\n0.01,nan", "row 2 is no number"),
-        ("0,0\n0.01,1e400", "row 2 is no number"),
+        ("0,0\n0.01,nan", "row 2 is not finite"),
+        ("0,0\n0.01,1e400", "row 2 is not finite"),
         ("0,0\n0.01,\u202e1", "\\u202e1"),
         ("0,0\n1e300,1", "1e+304 samples"),
     ],
@@ -296,7 +296,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--rate", "5"), ("--rate", "without a unit")),
     (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest found with PI", "Ask for")),
     (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
-    (("--amplitude", "x=1mm"), ("trajectory x", "leaves what the strokes reach", "Shrink the trajectory")),
+    (("--amplitude", "x=1mm"), ("trajectory x", "beyond the strokes from", "Scale the trajectory")),
     (("--amplitude", "z=1um"), ("trajectory z: the stage has no motion z", "x")),
     (("--amplitude", "q=1um"), ("--amplitude q=1um", "rx, ry, rz, x, y, z")),
     (("--trajectory", "raster"), ("the stage has no motion y",)),

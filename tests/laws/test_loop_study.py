@@ -241,7 +241,7 @@ def test_loads_that_are_carried_take_of_the_strokes() -> None:
     """290 of 300 um are there for a command, but not beside the 16 um that carry the platform's weight."""
     slow, far = ControllerSetup(integral=5.0), StepMotion(amplitude=AxisAmplitudes(z=290e-6))
     assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
-    with pytest.raises(DesignError, match="trajectory z: it leaves what the strokes reach"):
+    with pytest.raises(DesignError, match="trajectory z: beyond the strokes from"):
         loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
 
 
