@@ -101,7 +101,7 @@ def test_shipped_cases_fit(name: str) -> None:
     assert fits(dumps(CASES[name].build()))
 
 
-@examples(8, 400)
+@examples(6)
 @given(mechanisms())
 def test_any_description_fits_but_for_its_bounds(mechanism: Mechanism) -> None:
     assert fits(dumps(mechanism), UNBOUNDED)
