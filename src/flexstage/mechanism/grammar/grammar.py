@@ -463,7 +463,7 @@ def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, An
         return raw
     tags = raw.get(TAGS, {})
     if not isinstance(tags, dict) or not all(isinstance(tag, str) for tag in tags.values()):
-        reader.refuse(join(where, TAGS), "these are no tags", 'Write for example tags = { thickness = "stated paper 2.2" }')
+        reader.refuse(join(where, TAGS), "a tag is a text", 'Write tags = { thickness = "stated paper 2.2" }, and quote a key with dots')
     else:
         reader.tags.update({join(where, key): tag for key, tag in tags.items()})
     return {key: value for key, value in raw.items() if key != TAGS}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +12,7 @@ from flexstage.base.finding import DesignError, Finding, require, suggest_neares
 from flexstage.base.number import Table
 from flexstage.mechanism.addresses.address import set_text, set_value
 from flexstage.mechanism.addresses.locate import canonical, locate
+from flexstage.mechanism.assembly.expand import unknown_entries
 from flexstage.mechanism.assembly.mount import STAGES, Mount, mount_all
 from flexstage.mechanism.catalogue import Section, shipped_catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
@@ -19,7 +20,7 @@ from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.formulas import NUMBERS, read_numbers
 from flexstage.mechanism.grammar.grammar import LIKE, OVERRIDES, TAGS, node_of
 from flexstage.mechanism.grammar.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.store.anchor import anchor_paths
 from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
 from flexstage.mechanism.store.include import entry_of, with_included
@@ -47,8 +48,20 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
         mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
     except EnoughError:
         reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
-    require(included.located(reader.findings))
+    if reader.findings and STAGES not in raw:
+        reader.findings += _unknown_names({name: table for name, table in raw.items() if isinstance(table, dict)})
+    require(included.located(list(dict.fromkeys(reader.findings))))
     return mechanism
+
+
+def _unknown_names(raw: dict[str, dict[str, Any]]) -> Iterator[Finding]:
+    """Unknown entries and bodies that a tree names, found although other values of the file are wrong."""
+    yield from unknown_entries(raw)
+    bodies = {GROUND, *raw.get("bodies", ())}
+    for name, link in raw.get("links", {}).items():
+        for body in link.get("joins", ()) if isinstance(link, dict) else ():
+            if isinstance(body, str) and "/" not in body and isinstance(link["joins"], list) and body not in bodies:
+                yield Finding(f"links.{name}.joins", f'there is no body "{body}"', suggest_nearest(body, bodies))
 
 
 def read_design(text: str, where: str) -> Mechanism:
@@ -142,6 +155,8 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
         return reader.note(missing)  # what they offer is not known, which says nothing about the rest
     raw = _with_likes(reader, raw)
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES)}
+    if isinstance(raw.get("requirements"), dict):
+        body["requirements"] = dict(_dotted(raw["requirements"]))
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
         return BAD
@@ -166,6 +181,15 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     mechanism = replace(mechanism, overrides={**mechanism.overrides, **values}, tags=Table(tags), sources=Table(sources))
     formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # an override, where it is one by now
     return replace(mechanism, formulas=Table(formulas))
+
+
+def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
+    for key, value in table.items():
+        if isinstance(value, dict) and key != TAGS:
+            yield from ((f"{key}.{inner}", each) for inner, each in _dotted(value))
+        else:
+            yield key, value
 
 
 def _with_likes(reader: Reader, raw: dict[str, Any]) -> dict[str, Any]:
@@ -240,5 +264,7 @@ def _overrides(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dic
             for key in [key for key in reader.formulas if key.startswith(where)]:
                 reader.formulas[address + key.removeprefix(where)] = reader.formulas.pop(key)
         except DesignError as error:
-            reader.note(replace(finding, where=where) for finding in error.findings)
+            key = f"{address}.{next(iter(value))}" if isinstance(value, dict) and value else ""
+            advice = f'. Quote a key with dots: "{short(key)}"' if key else ""
+            reader.note(replace(finding, where=where, advice=finding.advice + advice) for finding in error.findings)
     return values
