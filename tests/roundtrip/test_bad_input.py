@@ -192,6 +192,39 @@ def test_a_number_may_have_the_name_of_a_unit(name: str) -> None:
     assert loads(text).parts["wire"].length == 0.03
 
 
+CATALOGUE = """
+[sources]
+lot = "tensile test"
+[materials.ours]
+young = "71.2 GPa"
+poisson = 0.33
+density = "2810 kg/m^3"
+tags = { young = "stated lot" }
+[coils.small]
+force_constant = "12 N/A"
+"""
+
+
+def test_entries_of_a_catalogue_of_ones_own(tmp_path: Path) -> None:
+    head = 'format = "flexstage 1"\nname = "a"\ncatalogue = "lab.toml"\n'
+    design = head + 'materials.al.like = "ours"\nmaterials.steel.like = "17-4PH"\nparts.coil.like = "small"\n'
+    (tmp_path / "lab.toml").write_text(CATALOGUE)
+    stage = loads(design, checked=False, folder=tmp_path)
+    assert stage.materials["al"].young == 71.2e9
+    assert stage.parts["coil"].kind == "voice_coil"
+    assert stage.sources["lot"] == "tensile test"
+    for name, text, words in (
+        ("no.toml", CATALOGUE, "there is no such file"),
+        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: this is no section of entries by name. The nearest name is coils."),
+        ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: this is no section"),
+        ("lab.toml", CATALOGUE.replace("ours", "theirs"), 'the catalogue has no "ours"'),
+        ("lab.toml", CATALOGUE.replace("71.2 GPa", "71.2 N"), "materials.al.young"),
+    ):
+        (tmp_path / "lab.toml").write_text(text)
+        with pytest.raises(DesignError, match=re.escape(words)):
+            loads(design.replace("lab.toml", name), checked=False, folder=tmp_path)
+
+
 def test_a_flood_of_mistakes_is_cut_short() -> None:
     lines = told(TEXT + "".join(f"unknown{number} = 1\n" for number in range(10_000)))
     assert len(lines) < 200

@@ -128,7 +128,6 @@ UNBOUNDED = without_bounds(SCHEMA)
         ("diameter =", "diametre ="),
         ('kind = "rod"\n', ""),
         ('kind = "rod"', 'kind = "rodd"'),
-        ('like = "SUS420"', 'like = "SUS430"'),
         ('facing = "tangent"', 'facing = "tangential"'),
         ('along = "z"', 'along = "up"'),
         ('along = "z"', "along = [0, 0]"),

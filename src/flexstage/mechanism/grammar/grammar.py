@@ -307,7 +307,8 @@ class RecordNode(Node):
         section = shipped_catalogue().section(self.record)
         demand: dict[str, Any] = {"required": required}
         if section is not None:
-            properties |= {LIKE: {"enum": list(section.entries), "description": "the entry of the catalogue to start from"}}
+            names = {"anyOf": [{"enum": list(section.entries)}, {"type": "string"}]}
+            properties |= {LIKE: names | {"description": "the entry of the catalogue to start from"}}
             demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
         demand |= {"oneOf": wrapped} if wrapped else {}
         shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}
