@@ -172,7 +172,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     >>> loop = coordinates(ideal(stage))
     >>> far = courses(StepMotion(amplitude=AxisAmplitudes(x=1e-3)), loop)[0]
     >>> found = course_findings(far, np.array([[1e-3]]), np.zeros(1), ideal(stage).mapping, stroke_limits(stage))
-    >>> found[0].where, "leaves what the strokes reach" in found[0].what
+    >>> found[0].where, "beyond the strokes" in found[0].what
     ('trajectory x', True)
     """
     found = reach_findings(poses, times, reachable(gains, limits)) if np.all(np.isfinite(limits.full)) else []
