@@ -1,4 +1,4 @@
-"""Identification of a test from the files' contents to modes: what is usable, spectra of it, modes."""
+"""Identification pipeline from file contents to modes: usable data, spectra, modes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.experiment.spectral.cross_spectra import Spectra, pool, spectra
 from flexstage.experiment.spectral.transfer import h2, multiple_coherence, spectral_ratio
 
 Measurement: TypeAlias = tuple[Record, ...] | Responses
-"""What was measured: records of one stage that belong together, or an analyser's responses."""
+"""Records of one stage, or an analyser's responses."""
 
 _LOOKED, _SPECTRA = 0.1, 0.3
 _DEFAULT = Search()
@@ -32,10 +32,10 @@ _DEFAULT = Search()
 
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """A test, the modes found in it, and what its spectra say.
+    """Identification of a test: its data, modes and spectra.
 
-    `multiple` (f, p) is the multiple coherence; `second` and `ratio` are H2 and the paper's T_ij = G_ij/G_ii (Eq. 29), absent where the
-    spectra do not give them. All are absent for an analyser's responses. H1 and the ordinary coherence are in `found.responses`.
+    `multiple` (f, p) is the multiple coherence. `second` and `ratio` are H2 and the paper's T_ij = G_ij/G_ii (Eq. 29), absent if the
+    spectra do not define them. All are absent for an analyser's responses. H1 and the ordinary coherence are in `found.responses`.
     """
 
     test: Annotated[Measurement, INNER]
@@ -47,12 +47,12 @@ class Identification:
 
     @property
     def files(self) -> Annotated[tuple[Record | Responses, ...], VIEW]:
-        """What was measured, file by file."""
+        """Measured data, file by file."""
         return (self.test,) if isinstance(self.test, Responses) else self.test
 
     @property
     def mean_multiple_coherence(self) -> Annotated[Mapping[str, float] | None, VIEW]:
-        """The share of each output's power that all inputs explain, over the band; null for an analyser's responses."""
+        """Share of each output's power explained by all inputs, over the band; null for an analyser's responses."""
         if self.spectra is None or self.multiple is None:
             return None
         low, high = self.found.band
@@ -65,9 +65,9 @@ def usable_measurement(
     accept_faults: frozenset[FaultTolerance] = frozenset(),
     requirements: RecordRequirements | None = None,
 ) -> Measurement:
-    """What of the files' contents can be used together; raises `DesignError` with every fault that is not allowed.
+    """Check which file contents can be used together; raises `DesignError` with every fault that is not accepted.
 
-    Several records are taken for tests of one stage; responses stand alone.
+    Several records are tests of one stage; responses are used alone.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> [each.duration for each in usable_measurement([one_mode_record()])]
@@ -92,7 +92,7 @@ def usable_measurement(
 
 
 def identification(test: Measurement, search: Search = _DEFAULT) -> Identification:
-    """The modes of a test, and the spectra they were found in. Raises `DesignError` as `identify` does.
+    """Identify the modes of a test, with their spectra. Raises `DesignError` as `identify`.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> seen = identification((one_mode_record(),))
@@ -120,8 +120,8 @@ def identification(test: Measurement, search: Search = _DEFAULT) -> Identificati
 
 def _without_inputs(test: Measurement, search: Search) -> Identified:
     if isinstance(test, Responses):
-        what = f"the test is of responses to inputs, and {search.excitation.value} is said to have moved the stage"
-        raise refuse(test.where, what, "Leave the excitation out, or give records of outputs")
+        what = f"the test contains responses to inputs, which contradicts the excitation {search.excitation.value}"
+        raise refuse(test.where, what, "Omit the excitation, or use records of outputs")
     return identify_floor(test, search) if search.excitation is Excitation.FLOOR else identify_decay(test, search)
 
 
@@ -140,4 +140,6 @@ def _mixed_kinds(contents: Sequence[Record | Responses]) -> list[Finding]:
     if len(contents) == 1:
         return []
     kinds = ", ".join(f"{each.source or each.name or 'one'}: {'record' if isinstance(each, Record) else 'responses'}" for each in contents)
-    return [Finding("records", f"responses cannot be put together with others ({kinds})", "Give several records, or responses alone")]
+    return [
+        Finding("records", f"responses cannot be combined with other data ({kinds})", "Use several records, or a single file of responses")
+    ]

@@ -1,4 +1,4 @@
-"""Progress of a computation: who follows it, and which part of the whole is being computed."""
+"""Progress of a computation: its observer, and the current part of the whole."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from contextvars import ContextVar
 from typing import TypeAlias
 
 Told: TypeAlias = Callable[[str, float], None]
-"""Called with the work that is being done and the share of all work that is done, 0 to 1."""
+"""Callback with the current work and the completed share, 0 to 1."""
 
 
 def _ignore(_text: str, _share: float) -> None:
-    """Nobody follows."""
+    """Without observer."""
 
 
 _FOLLOWER: ContextVar[Told] = ContextVar("_FOLLOWER", default=_ignore)
@@ -20,7 +20,7 @@ _FOLLOWER: ContextVar[Told] = ContextVar("_FOLLOWER", default=_ignore)
 
 @contextmanager
 def followed(told: Told) -> Generator[None]:
-    """Report the progress of what is computed within to `told`.
+    """Report the progress of the computations within to `told`.
 
     >>> with followed(print), part(0.5, 1.0, "finding modes"):
     ...     report(0.5)
@@ -35,12 +35,12 @@ def followed(told: Told) -> Generator[None]:
 
 @contextmanager
 def part(start: float, stop: float, text: str = "") -> Generator[None]:
-    """Count the work within as the part of the whole from `start` to `stop` (shares); `text` describes it."""
+    """Assign the range from `start` to `stop` (shares) of the whole to the work within; `text` describes it."""
     outer = _FOLLOWER.get()
     with followed(lambda own, share: outer(text or own, start + share * (stop - start))):
         yield
 
 
 def report(share: float) -> None:
-    """Report the share of the present part that is done, 0 to 1."""
+    """Report the completed share of the current part, 0 to 1."""
     _FOLLOWER.get()("", share)

@@ -1,4 +1,4 @@
-"""Options of commands that read records of tests, and the records opened and identified as they say."""
+"""Options of commands that read test records; opening and identification of the records."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from flexstage.show.command.values import names
 if TYPE_CHECKING:
     from flexstage.experiment.formats import read as files
 else:
-    files = Late("flexstage.experiment.formats.read")  # a loop is not always closed around a record
+    files = Late("flexstage.experiment.formats.read")  # loops often have no record
 
 RECORD = text_option("--record", "RECORD", "Record or frequency responses of a test. Repeatable.")
 Inputs: TypeAlias = Annotated[
@@ -83,7 +83,7 @@ FrequencyResolution: TypeAlias = Annotated[
 
 @dataclass(frozen=True)
 class RecordTexts:
-    """What the user says about records, as texts of the command line; not every command asks for the `excitation`."""
+    """Record options as command-line texts; only some commands have `excitation`."""
 
     inputs: Inputs = None
     outputs: Outputs = None
@@ -98,7 +98,7 @@ class RecordTexts:
     excitation: Excitation | None = None
 
     def options(self) -> options.Options:
-        """The options of the reader; raises `DesignError` with all that is wrong with them."""
+        """Convert to reader options; raises `DesignError` with all errors."""
         findings: list[Finding] = []
         units = _units(self.units, findings)
         accepted = [_word("--accept-fault", word, options.FaultTolerance, findings) for word in names(self.accept_fault)]
@@ -117,12 +117,12 @@ class RecordTexts:
         )
 
     def require_unsaid(self) -> None:
-        """Refuse every option that is given: there is no record that it could be of."""
+        """Refuse every record option without a record."""
         said = ("array" if name == "arrays" else name.replace("_", "-") for name, value in vars(self).items() if value)
         require(Finding(f"--{name}", "it is of records, and none is given", "Name them by --record, or leave it out") for name in said)
 
     def search(self) -> Search:
-        """What is searched for."""
+        """Search parameters."""
         band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
         if self.band is not None and band is not None and band[0] >= band[1]:
             raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Give a low frequency and a higher one")
@@ -131,7 +131,7 @@ class RecordTexts:
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
 
     def requirements(self, model: LinearModel | None, highest: float | None = None) -> RecordRequirements:
-        """What is asked of records: outputs of the stage where there is one, a rate for the highest mode or the band, the resolution."""
+        """Requirements of records: the stage's outputs, if known, a rate for the highest mode or the band, the resolution."""
         top = _hertz("--band", self.band[1]) if self.band is not None else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
         unrecorded = self.excitation not in (None, Excitation.RECORDED)
@@ -142,7 +142,7 @@ class RecordTexts:
 
 
 def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record | Responses]:
-    """What the files hold; raises `DesignError` with all that keeps any of them from being read."""
+    """Read the files; raises `DesignError` with the errors of all."""
     found: list[Record | Responses] = []
     findings = list(_repeated(paths))
     for path in dict.fromkeys(paths):
@@ -155,7 +155,7 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """The modes of the records, each warning told; with the model of the stage and its `highest` mode [Hz] where they are known."""
+    """Identify the modes of records and print each warning; with the stage's model and its `highest` mode [Hz], if known."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown, followed(shown.share):
         seen = identification(usable_measurement(open_records(paths, reader), reader.accept_faults, needs), search)
@@ -165,10 +165,10 @@ def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearMod
 
 
 def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
-    """The measured shapes on the stage; what keeps them from being given is told."""
+    """Map measured shapes to the stage; prints the reason if impossible."""
     found = stage_shapes(ideal(mechanism), seen.found)
     if found.missing:
-        print_note(f"not given: shapes on the stage: {found.missing}")
+        print_note(f"no shapes on the stage: {found.missing}")
     return found
 
 
@@ -204,12 +204,12 @@ def _word(option: str, word: str, kind: type[Enum], findings: list[Finding]) -> 
     known = [str(each.value) for each in kind]
     if word in known:
         return word
-    findings.append(Finding(f"{option} {word}", f'"{word}" is none of {", ".join(known)}', "Write one of these words"))
+    findings.append(Finding(f"{option} {word}", f'"{word}" is none of {", ".join(known)}', "Use one of these words"))
     return None
 
 
 def _hertz(option: str, text: str) -> float:
     value = parse(text, FREQUENCY, where=option)
     if value < 0.0 or (value == 0.0 and option != "--band"):
-        raise refuse(option, f"{text} is no frequency to use", 'Give one above zero, e.g. "2 kHz"')
+        raise refuse(option, f"no frequency (got {text})", 'Use one above zero, e.g. "2 kHz"')
     return value

@@ -1,4 +1,4 @@
-"""Measured shapes on the stage: what outputs named as the stage's gauges and motions tell of the motion of its bodies."""
+"""Measured shapes on the stage: body motions from outputs named as the stage's gauges and motions."""
 
 from __future__ import annotations
 
@@ -26,9 +26,8 @@ _RANK = 1e-6
 class StageShapes:
     """Measured shapes as motions of the stage.
 
-    `motions` holds by body the twists (6, k) [m, rad] of all modes; `used` names the outputs they follow from; `explained` (k,) is the
-    share of each measured shape that a motion of the ideal stage explains: 1 where there are no more outputs than freedoms. `missing` says
-    why there are no twists.
+    `motions` are the twists (6, k) [m, rad] of all modes by body. `used` names the outputs used. `explained` (k,) is the share of each
+    measured shape explained by ideal motion: 1 if outputs do not exceed degrees of freedom. `missing` is the reason for missing twists.
     """
 
     motions: Mapping[str, Array]
@@ -38,16 +37,16 @@ class StageShapes:
 
     @property
     def twists(self) -> Annotated[tuple[Mapping[str, float], ...] | None, VIEW]:
-        """The platform's twist [m, rad] in each mode."""
+        """Platform twist [m, rad] in each mode."""
         found = self.motions.get(PLATFORM)
         return None if found is None else tuple(dict(zip(COMPONENTS, column.tolist(), strict=True)) for column in found.T)
 
 
 def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
-    """The motions of the ideal stage that fit the measured shapes best: x = V (R V)^+ s, rows of R those of R_s or of a body's twist.
+    """Fit ideal stage motions to the measured shapes: x = V (R V)^+ s, rows of R from R_s or from a body's twist.
 
-    By least squares, rotations weighted with `length`. It is what R_s^-1 of the paper (Eq. 14) does for six gauges. Bodies move as
-    hinges free about their intended axes let them.
+    Least squares, with rotations weighted by `length`; equals R_s^-1 of the paper (Eq. 14) for six gauges. Bodies move with hinges free
+    about their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -66,7 +65,7 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     seen = weight[:, None] * np.stack(list(rows.values())) * scale
     rank = int(np.linalg.matrix_rank(seen, tol=_RANK * float(np.linalg.norm(seen, 2))))
     if rank < kinematics.mobility:
-        return _missing_shapes(f"{', '.join(rows)} see {rank} of the {kinematics.mobility} motions of the platform")
+        return _missing_shapes(f"{', '.join(rows)} observe only {rank} of the {kinematics.mobility} motions of the platform")
     measured = weight[:, None] * si_shapes(found)[chosen]
     motion = np.linalg.lstsq(seen, measured, rcond=None)[0]
     rest = np.sum((measured - seen @ motion) ** 2, axis=0) / np.maximum(np.sum(measured**2, axis=0), 1e-300)
@@ -75,7 +74,7 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
 
 
 def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
-    """Real shapes (p, k) of the outputs, or of those named, each in its unit's coherent SI form: shapes of um and mm side by side.
+    """Convert real shapes (p, k) of all or the named outputs to coherent SI units, for example with um and mm mixed.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -90,7 +89,7 @@ def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
 
 
 def si_factor(channel: Channel) -> float:
-    """The size of a channel's unit in SI; 1 where it is not known.
+    """Return the size of a channel's unit in SI; 1 if unknown.
 
     >>> si_factor(Channel("S1", "um")), si_factor(Channel("S1"))
     (1e-06, 1.0)
@@ -99,7 +98,7 @@ def si_factor(channel: Channel) -> float:
 
 
 def _row(kinematics: Kinematics, name: str) -> Array | None:
-    """How an output follows the platform's coordinates (f,); absent for names that are none of the stage's."""
+    """Row of an output over the platform's coordinates (f,); None for other names than the stage's."""
     if name in kinematics.gauges:
         return first_design(kinematics.sensing, 2)[kinematics.gauges.index(name)] @ first_design(kinematics.motion, 2)
     owner, _, component = name.rpartition(".")

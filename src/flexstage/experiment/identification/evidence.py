@@ -1,4 +1,4 @@
-"""The evidence for modes, whatever it comes from: responses to take candidates from, and lines to fit modes to."""
+"""Identification data from any source: responses for candidates, and lines for the fit of modes."""
 
 from __future__ import annotations
 
@@ -28,21 +28,20 @@ _ONCE, _DRIVEN, _FEWEST, _SHORTEST = 1.7, 1e-3, 8, 64
 _HIGHEST = 0.42
 _LOWEST_LINES = 3
 _RUNNING = 10
-_PASSES = 4  # for tones, for spectra, for the fit of modes, and to see what drives them
+_PASSES = 4  # for tones, spectra, the fit of modes, and the test of excitation
 _ROUNDING = 1e-13
-"""Relative error of sums of some thousand double numbers."""
+"""Relative error of sums of about a thousand double-precision numbers."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Responses for candidates and lines for the fit.
+    """Identification data: responses for candidates, and lines for the fit.
 
-    `responses` are in the channels' own units, with weights (f, p) of outputs; `lines()` gives the lines of all blocks, their inputs and
-    outputs divided by `input_scale` (m,) and `output_scale` (p,); `density` (f, p) is the noise per line, not divided. `band` is what the
-    data can show, in Hz; `inflation` the factor on variances for neighbouring lines that are not independent; `coherence` the multiple
-    coherence (f, p), absent where there is none; `resolution` the distance of lines in Hz; `rounding` (p,) the variance per line, divided
-    by the scales, that rounding the samples leaves; `tones` those seen in outputs, the steady ones taken out; `stored` whether an
-    analyser made the responses, `unstated` whether it says nothing of its window.
+    `responses` are in the channels' own units, with weights (f, p) of outputs. `lines()` returns the lines of all blocks, their inputs and
+    outputs divided by `input_scale` (m,) and `output_scale` (p,). `density` (f, p) is the unscaled noise per line. `band` is the range of
+    the data, in Hz; `inflation` the factor on variances for dependent neighbouring lines; `coherence` the multiple coherence (f, p), if
+    known; `resolution` the line spacing in Hz. `rounding` (p,) is the scaled variance per line by sample rounding. `tones` are those in
+    outputs, the steady ones removed. `stored`: an analyser made the responses; `unstated`: its window is unknown.
     """
 
     where: str
@@ -66,18 +65,18 @@ class Evidence:
     unstated: bool = False
 
     def apart(self, frequencies: Array) -> Array:
-        """Distance of lines in Hz about `frequencies` in Hz: `resolution`, or where lines lie unevenly what it is there."""
+        """Spacing of lines in Hz near `frequencies` in Hz: `resolution`, or the local value for uneven lines."""
         lines = self.responses.frequencies
         if not self.stored or is_even(lines):
             return np.full(np.shape(frequencies), self.resolution)
         return np.interp(frequencies, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines))
 
     def shape(self, cells: Cells) -> Array:
-        """How the noise variance goes over cells, (p, c), up to a factor: as coherence says where it was stored, else even."""
+        """Relative noise variance over cells, (p, c): from stored coherence, else uniform."""
         return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
 
     def variance(self, low: float, high: float) -> Array:
-        """A first guess of the noise variance (p,) per line of the outputs, divided by their scales: the median over the band."""
+        """First estimate of the noise variance (p,) per line of the outputs, divided by their scales: the median over the band."""
         inside = (self.responses.frequencies >= low) & (self.responses.frequencies <= high)
         chosen = self.density[inside] if np.any(inside) else self.density
         floor = 1e-10 * np.max(self.density, axis=0)
@@ -85,9 +84,9 @@ class Evidence:
 
 
 def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, known: Sequence[Spectra] = ()) -> Evidence:
-    """The evidence in a record, in several records of one stage, or in an analyser's responses.
+    """Extract the identification data of a record, of several records of one stage, or of an analyser's responses.
 
-    Spectra of the records that are `known` already, one a record, are used where their segments are those and no tone is taken out.
+    Uses `known` spectra of the records, one each, if their segments match and no tone is removed.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> round(evidence(one_mode_record(), None).band[1], 2)
@@ -108,7 +107,7 @@ def evidence(what: Record | Responses | Sequence[Record], segments: Segments | N
 
 
 def _each_part(compute: Callable[[Record], _Result], records: Sequence[Record]) -> list[_Result]:
-    """A computation for every record, each an equal part of the progress."""
+    """Apply a computation to every record, each an equal part of the progress."""
     found: list[_Result] = []
     for index, record in enumerate(records):
         with part(index / len(records), (index + 1) / len(records)):
@@ -160,13 +159,13 @@ def _of_records(records: tuple[Record, ...], known: Spectra) -> Evidence:
 
 
 def _single_noise(known: Spectra, responses: Responses) -> Array:
-    """Noise density (f, p) of outputs where no averages tell it: by what neighbouring lines differ, even over all lines."""
+    """Noise density (f, p) of outputs without averages: from differences of neighbouring lines, uniform over all lines."""
     rough = _roughness(responses.frequencies, responses.values) * np.real(np.diagonal(known.xx, axis1=1, axis2=2))[1:-1, None]
     return np.repeat(np.median(rough, axis=(0, 2))[None], len(responses.frequencies), axis=0)
 
 
 def _scale(density: Array, rate: float) -> Array:
-    """Root mean square per line, nought where there is nothing."""
+    """Root mean square per line, zero without signal."""
     return np.sqrt(np.mean(np.real(np.diagonal(density, axis1=1, axis2=2)), axis=0) * rate / 2.0)
 
 
@@ -175,9 +174,9 @@ def _divisor(scale: Array) -> Array:
 
 
 def _rounding(outputs: tuple[Channel, ...], scale: Array) -> Array:
-    """Rounding is relative to what was added up: to the largest of the channels of one unit, whatever this one shows of it.
+    """Rounding relative to the sums: to the largest channel of the same unit.
 
-    An output that shows nothing at all says nothing either: its steps are unknown, and any variance will do.
+    An output without signal has unknown resolution; any variance is acceptable.
     """
     largest = np.array([max(value for other, value in zip(outputs, scale, strict=True) if other.unit == each.unit) for each in outputs])
     return np.where(scale > 0.0, (_ROUNDING * largest / _divisor(scale)) ** 2, 1.0)
@@ -189,9 +188,9 @@ def _scale_lines(lines: Lines, input_scale: Array, output_scale: Array) -> Lines
 
 
 def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
-    """Long segments resolve sharp resonances, many average noise: as many as `wanted`, and three for each input.
+    """Choose segments: long ones resolve sharp resonances, many average noise; the number `wanted`, and three for each input.
 
-    One sweep has no averages to make: each frequency is driven once. Its segment is the whole record, without a window.
+    A single sweep has no averages: it excites each frequency once. Its segment is the whole record, without a window.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> choose_segments([one_mode_record(seconds=48.0)]).seconds
@@ -207,7 +206,7 @@ def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Seg
 
 
 def _is_swept_once(record: Record, segments: Segments) -> bool:
-    """Whether the one input drives each frequency in one segment alone: their powers P give (sum P)^2 / sum P^2 = 1."""
+    """Whether a single input excites each frequency in only one segment: (sum P)^2 / sum P^2 = 1 for their powers P."""
     size = round(segments.seconds * record.rate)
     if len(record.inputs) != 1 or size < _SHORTEST:
         return False
@@ -221,12 +220,12 @@ def _is_swept_once(record: Record, segments: Segments) -> bool:
     if len(power) < _FEWEST or not np.any(driven):
         return False
     often = total[driven] ** 2 / np.sum(power[:, driven] ** 2, axis=0)
-    lines = np.bincount(np.argmax(power[:, driven], axis=0))  # of a blow one segment has all
+    lines = np.bincount(np.argmax(power[:, driven], axis=0))  # an impact is in one segment
     return bool(np.median(often) < _ONCE and np.max(lines) < 0.5 * np.sum(lines))
 
 
 def whole_segment(records: Sequence[Record]) -> Segments:
-    """One segment without a window, as long as the shortest record: what a blow or a burst asks for.
+    """Return one segment without a window, as long as the shortest record, for an impact or a burst.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> whole_segment([one_mode_record(seconds=48.0)]).seconds
@@ -274,7 +273,7 @@ def _of_responses(known: Responses) -> Evidence:
 
 
 def _shape(known: Responses, output_scale: Array) -> Callable[[Cells], Array] | None:
-    """How noise goes with frequency: as coherence says, else in proportion to the response where lines show it, else even."""
+    """Noise over frequency: from coherence, else proportional to the response if the lines show it, else uniform."""
     if known.coherence is not None:
         return lambda cells: _coherent_shape(known, cells)
     growth = noise_growth(known.frequencies, known.values / output_scale[:, None])
@@ -284,9 +283,9 @@ def _shape(known: Responses, output_scale: Array) -> Callable[[Cells], Array] | 
 
 
 def _coherent_shape(known: Responses, cells: Cells) -> Array:
-    """|H|^2 (1 - g^2) / g^2, to which an estimate's variance is proportional (Bendat & Piersol, ch. 9), at the cells' middles.
+    """Noise level |H|^2 (1 - g^2) / g^2, proportional to an estimate's variance (Bendat & Piersol, ch. 9), at the cells' midpoints.
 
-    The running median over 21 lines: a single line that stands out is no noise.
+    Running median over 21 lines: a single prominent line is not noise.
     """
     share = np.clip(known.coherence if known.coherence is not None else np.ones(1), 1e-3, 1.0 - 1e-6)
     power = np.abs(known.values) ** 2 * (1.0 - share) / share
@@ -314,7 +313,7 @@ def _response_findings(known: Responses, steps: Array) -> list[Finding]:
 
 
 def is_even(frequencies: Array) -> bool:
-    """Whether lines lie evenly, to a thousandth of their distance; those of stepped and swept sines do not.
+    """Whether lines are evenly spaced, to a thousandth of their spacing; stepped and swept sines are not.
 
     >>> is_even(np.arange(5.0)), is_even(np.geomspace(1.0, 9.0, 5))
     (True, False)
@@ -324,7 +323,7 @@ def is_even(frequencies: Array) -> bool:
 
 
 def _roughness(frequencies: Array, values: Array) -> Array:
-    """Noise variance (f-2, p, m) by how far each line is from the straight line through its neighbours, wherever they lie."""
+    """Noise variance (f-2, p, m) from the distance of each line from the straight line through its neighbours, for any spacing."""
     share = ((frequencies[1:-1] - frequencies[:-2]) / (frequencies[2:] - frequencies[:-2]))[:, None, None]
     away = values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:]
     return np.abs(away) ** 2 / (1.0 + share**2 + (1.0 - share) ** 2)

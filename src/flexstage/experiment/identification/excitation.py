@@ -1,14 +1,14 @@
-"""What moves a stage while it is recorded."""
+"""Excitation of a stage during a record."""
 
 from enum import Enum
 
 
 class Excitation(Enum):
-    """What moved the stage."""
+    """Excitation of the stage."""
 
     RECORDED = "recorded"
-    """Inputs that were recorded."""
+    """Recorded inputs."""
     FLOOR = "floor"
-    """The floor, or other noise that nobody recorded, all along."""
+    """Continuous floor motion, or other unrecorded noise."""
     DECAY = "decay"
-    """Nothing: it was left to itself after a blow or a release."""
+    """Free decay after an impact or a release."""

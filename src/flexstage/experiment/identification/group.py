@@ -1,4 +1,4 @@
-"""The modes of one group of candidates: fitted together, freed of what is not significant, added to where the data hold more."""
+"""Modes of one group of candidates: joint fit, removal of insignificant modes, addition of further significant ones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.experiment.identification.likelihood import Band, Fit, Modal, bac
 from flexstage.experiment.spectral.lines import Cells
 
 ONCE_IN = 1e-9
-"""How often noise may pass for a mode."""
+"""Trials per false mode caused by noise."""
 _SURE, _EVIDENT = 1.0 / 3.0, 3.0
 _ROUNDS = 2
 _NOTICED, _DOUBTED, _SLIGHT = 2.0, 1e-4, 1.1
@@ -27,7 +27,7 @@ _MOST_MODES = 24
 
 @dataclass(frozen=True, eq=False)
 class Lost:
-    """A resonance left out again: its `pole` in Hz, `shape` (p,), and how likely (`chance`) noise would be as strong."""
+    """Rejected resonance: its `pole` in Hz, `shape` (p,), and the probability (`chance`) of noise of that strength."""
 
     pole: complex
     shape: Array
@@ -36,7 +36,7 @@ class Lost:
 
 @dataclass(frozen=True, eq=False)
 class Hunt:
-    """What is looked for: modes in `group`, damped no more than `highest_damping`; what is left out again is added to `lost`."""
+    """Search parameters: modes in `group`, damped at most `highest_damping`; rejected ones are added to `lost`."""
 
     group: Extent
     highest_damping: float
@@ -45,9 +45,9 @@ class Hunt:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The modes of one band, that of `group`, with their deviations, those of noise alone, and significance.
+    """Identified modes of one band, that of `group`, with deviations, noise-only deviations, and significance.
 
-    `misfit` is by how much what is left near each exceeds the noise, `widening` the factor on its deviations for that.
+    `misfit` is the residual near each relative to noise, `widening` the resulting factor on its deviations.
     """
 
     group: Extent
@@ -59,7 +59,7 @@ class Found:
     widening: Array
 
     def select(self, chosen: Array) -> Found:
-        """Some of the modes, by their numbers."""
+        """Subset of the modes, by index."""
         modal, spread = self.modal, self.deviations
         return Found(
             self.group,
@@ -73,9 +73,9 @@ class Found:
 
 
 def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: Hunt) -> Found | None:
-    """The modes of one group of candidates: fitted, freed of what is not significant, fitted anew with the noise that is left.
+    """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the residual noise.
 
-    `cells` are those of the group's band; candidates beside the group stand for what lies outside. `None` where no mode is left.
+    `cells` belong to the group's band; candidates next to the group represent the outside. `None` without a mode.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record
@@ -108,11 +108,11 @@ def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], 
 
 
 def _hidden_mode_factor(band: Band, found: Fit) -> Array:
-    """The factor (k,) on deviations for a further mode that the data may hold, though not so surely that it is told.
+    """Factor (k,) on deviations for a possible further mode of lower significance than required for identification.
 
-    Noise would pass for it once in 10,000, not once in 1e9. If it is there, the modes beside it move as it is added, and are known as
-    well as they are then: deviations are the root of the sum of both squares (as models are averaged, Burnham & Anderson 2002, ch. 4, the
-    larger one taken as right).
+    Such a mode has a false-alarm rate of 1/10,000 instead of 1e-9. If present, it shifts the modes next to it. The deviations are the root
+    of the sum of squares of the shift and the deviations with it (as for model averaging, Burnham & Anderson 2002, ch. 4, with the larger
+    model assumed correct).
     """
     modal, score = found.modal, excess(band, found.modal)
     place = int(np.argmax(score))
@@ -130,10 +130,9 @@ def _hidden_mode_factor(band: Band, found: Fit) -> Array:
 
 
 def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], found: Found) -> Found:
-    """The modes with deviations that hold for the scatter between parts of the record, too, where the fit leaves more than noise.
+    """Increase the deviations to include the scatter between parts of the record, if the residual exceeds noise.
 
-    `cells` are those of the same band, gathered from the parts' transforms. A mode that changes with its amplitude or with time answers
-    otherwise in each.
+    `cells` are those of the same band, computed from the parts' transforms. A mode that depends on amplitude or time differs between parts.
     """
     modal = found.modal
     band = _band(known, cells, candidates, found.group)
@@ -153,9 +152,9 @@ def _band(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], grou
 
 
 def _widening(found: Found, band: Band, modal: Modal) -> Array:
-    """The factor (k,) on deviations of noise, of modes near which the fit leaves more.
+    """Inflation factor (k,) on noise deviations, for modes with a residual above noise.
 
-    It is the largest of that excess, of the scatter between sub-bands, and of that between blocks: inputs, records, or parts of records.
+    The largest of the residual excess, the scatter between sub-bands, and the scatter between blocks: inputs, records, or parts of records.
     """
     factors = found.widening.copy()
     noise_alone = np.maximum(found.deviations.frequencies, 1e-300)
@@ -175,7 +174,7 @@ def _chance(modal: Modal, strength: float) -> float:
 
 
 def _prune(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
-    """Leave out, one at a time and the least significant first, what is no mode; and the significance of the modes left."""
+    """Remove insignificant modes one at a time, least significant first; returns the significance of the others."""
     while len(found.modal.poles):
         worst, strength = _least_significant(band, found, hunt)
         if worst is None:
@@ -186,7 +185,7 @@ def _prune(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
 
 
 def _extend(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band, Fit, Array]:
-    """Add modes, one at a time, where the data hold more than those found explain, as long as that is significant."""
+    """Add modes one at a time while the unexplained data are significant."""
     while len(found.modal.poles) < _MOST_MODES:
         score = excess(band, found.modal)
         place = int(np.argmax(score))
@@ -201,7 +200,7 @@ def _extend(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band, 
 
 
 def _least_significant(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, Array]:
-    """The mode that is least one, if there is such, and how significant each is."""
+    """Least significant mode, if rejected, and the significance of each."""
     poles, limit = found.modal.poles, _limit(found.modal)
     ratio = -np.real(poles) / np.abs(poles)
     spread = deviations(found)
@@ -216,7 +215,7 @@ def _least_significant(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, 
 
 
 def _find_doubles(modal: Modal) -> Array:
-    """Modes that repeat another one: same pole within a tenth of its half-width, same shape and participation; the weaker of both."""
+    """Duplicates of other modes: same pole within a tenth of its half-width, same shape and participation; the weaker of both."""
     size = np.linalg.norm(modal.shapes, axis=0) * np.linalg.norm(modal.participation, axis=1)
     found = np.zeros(len(size), dtype=bool)
     for first in range(len(size)):

@@ -1,4 +1,4 @@
-"""What a record tells of a stage's modes."""
+"""Result of a modal identification."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ INFLATION = (
 
 @dataclass(frozen=True)
 class IdentifiedMode:
-    """One mode, its number counted from 1, with 95 % intervals; `shape` by output and `participation` by input are complex.
+    """Identified mode, with its number from 1 and 95 % intervals; `shape` by output and `participation` by input are complex.
 
-    `widening`, `complexity` and `significance` are told at `Identified`.
+    `widening`, `complexity` and `significance`: see `Identified`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -59,16 +59,15 @@ class IdentifiedMode:
 
 @dataclass(frozen=True, eq=False)
 class Identified(InNotebook):
-    """Modes found in records or responses, by rising frequency, each with its standard deviation.
+    """Modes identified from records or responses, by ascending frequency, each with its standard deviation.
 
     `frequencies` (k,) [Hz] are natural frequencies |pole|/(2 pi), `damping` (k,) ratios; `shapes` (p, k) complex, of the outputs, largest
     component 1; `participation` (k, m) complex, of the inputs: H = sum of shape participation / (j w - pole) + conjugate. `deviation` of
-    shapes is that of real and of imaginary part. `widening` (k,) is how many times larger deviations are than noise makes them, because the
-    fit leaves more than noise near the mode: 1 where it does not. `significance` (k,) is the chi-square by which the data ask for the mode,
-    over that which noise would pass once in 1e9. `close` lists modes nearer to one another than their half-widths: compare those by
-    subspace. `noise` (p,) is the outputs' noise density, in the outputs' unit squared per Hz. `warnings` say what the data cannot tell;
-    `peaks` are seen and are no modes, or not with confidence. `delay` [s] is how much later all outputs come than the modes have it, as
-    far as it had to be taken out for them to fit (0: not at all): H is as above times e^{-j w delay}.
+    shapes applies to real and imaginary part. `widening` (k,) is the inflation factor of deviations for a residual above noise near the
+    mode, else 1. `significance` (k,) is the mode's chi-squared statistic, relative to the level that noise reaches once in 1e9. `close`
+    lists modes closer than their half-widths: compare those by subspace. `noise` (p,) is the outputs' noise density, in the outputs' unit
+    squared per Hz. `warnings` list limits of the data; `peaks` are not confirmed as modes. `delay` [s] is the common delay of all outputs
+    removed before the fit (0: none): H is as above times e^{-j w delay}.
     """
 
     frequencies: Array
@@ -96,7 +95,7 @@ class Identified(InNotebook):
 
     @property
     def modes(self) -> Annotated[tuple[IdentifiedMode, ...], VIEW]:
-        """The modes one by one, ascending."""
+        """List of modes, ascending."""
         columns: tuple[Iterable[Any], ...] = (
             range(1, len(self.frequencies) + 1),
             self.frequencies.tolist(),
@@ -113,7 +112,7 @@ class Identified(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """The band, the delay and the close modes, for tables."""
+        """Notes: the band, the delay and the close modes."""
         band = f"between {self.band[0]:.4g} and {self.band[1]:.4g} Hz."
         if not self.modes:
             return (f"No mode was found {band}",)
@@ -128,12 +127,12 @@ class Identified(InNotebook):
 
     @property
     def close_modes(self) -> Annotated[tuple[tuple[int, ...], ...], VIEW]:
-        """Numbers of modes that lie nearer than their half-widths: compare those by subspace."""
+        """Numbers of modes closer than their half-widths: compare those by subspace."""
         return tuple(tuple(index + 1 for index in group) for group in self.close)
 
     @property
     def poles(self) -> Array:
-        """Poles (k,) in rad/s, the ones of positive imaginary part."""
+        """Poles (k,) in rad/s, with positive imaginary part."""
         natural = 2.0 * np.pi * self.frequencies
         return natural * (-self.damping + 1j * np.sqrt(1.0 - self.damping**2))
 
@@ -149,7 +148,7 @@ class Identified(InNotebook):
 
     @property
     def real_shapes(self) -> Array:
-        """Shapes (p, k) turned to be as real as they can be, and their real parts: what modes of an undamped model are compared with."""
+        """Real parts of shapes (p, k) rotated to be as real as possible, for comparison with an undamped model."""
         turn = np.exp(-0.5j * np.angle(np.sum(self.shapes**2, axis=0)))
         turned = np.real(self.shapes * turn)
         largest = np.take_along_axis(turned, np.argmax(np.abs(turned), axis=0)[None, :], axis=0) if turned.size else turned[:1]
@@ -157,18 +156,18 @@ class Identified(InNotebook):
 
     @property
     def complexity(self) -> Array:
-        """How far (k,) each shape is from a real one: 1 - |sum phi^2| / sum |phi|^2, nought for a real mode, 1 for a travelling wave."""
+        """Complexity (k,) of each shape: 1 - |sum phi^2| / sum |phi|^2, zero for a real mode, 1 for a travelling wave."""
         return 1.0 - np.abs(np.sum(self.shapes**2, axis=0)) / np.sum(np.abs(self.shapes) ** 2, axis=0)
 
     def response(self, frequencies: Array) -> Responses:
-        """The fitted responses at `frequencies` in Hz: modes and the residuals of what lies outside the band."""
+        """Compute the fitted responses at `frequencies` in Hz: modes, and residual terms of modes outside the band."""
         values = modal_sum(frequencies, self.poles, self.shapes, self.participation) + remainder_sum(frequencies, self.residuals)
         values = values * np.exp(-2j * np.pi * np.asarray(frequencies) * self.delay)[:, None, None] if self.delay else values
         return Responses(np.asarray(frequencies), self.outputs, self.inputs, values, name="modes", source=self.provenance)
 
     @property
     def shape_matrix(self) -> Annotated[Matrix, VIEW]:
-        """The real shapes: rows are outputs, columns modes."""
+        """Real shapes as a matrix: rows are outputs, columns modes."""
         names = tuple(str(index + 1) for index in range(len(self.frequencies)))
         return Matrix(self.real_shapes, tuple(channel.name for channel in self.outputs), names, "1")
 

@@ -1,4 +1,4 @@
-"""Modes from records, found without a hand: candidates by pLSCF, then maximum likelihood on the records' transforms."""
+"""Automatic modal identification from records: candidates by pLSCF, then maximum likelihood on the records' transforms."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ _LEAST_PARTS, _MOST_PARTS = 3, 8
 
 @dataclass(frozen=True)
 class Search(CheckedFields):
-    """What is searched for: modes with frequencies in `band` (Hz; absent: all the record can show), damped no more than `highest_damping`.
+    """Search parameters: frequencies in `band` (Hz; default: the whole range of the record), damping up to `highest_damping`.
 
-    `segments` are those of the spectra that candidates are taken from (absent: chosen by the record's length). `excitation` is what moved
-    the stage: of a stage whose inputs were not recorded modes are found from outputs alone, by `identification`.
+    `segments` belong to the spectra for candidates (default: by the record's length). `excitation` is the stage's excitation: without
+    recorded inputs modes are identified from outputs only, by `identification`.
     """
 
     band: tuple[float, float] | None = None
@@ -52,22 +52,17 @@ class Search(CheckedFields):
 
 @check_arguments
 def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), known: Sequence[Spectra] = ()) -> Identified:
-    """Natural frequencies, damping, shapes and participations, with 95 % intervals, and whether they are there at all.
+    """Identify natural frequencies, damping, shapes and participations, with 95 % intervals and significance.
 
-    `what` is a record, or several of the same stage (six with one actuator each are put together as one test), or responses of an analyser.
-    Spectra of the records that are `known` already, one a record, need not be computed again.
-    Candidates are the stable poles of pLSCF on H1; each group of near ones is then fitted by maximum likelihood to the transform of the
-    whole record, its transient included, so that there is neither window nor leakage: inputs are taken as exact, outputs' noise as of
-    slowly varying density; intervals hold for noise correlated between outputs too (Pintelon & Schoukens 2012, ch. 9 and 10). Where the fit
-    leaves more near a mode than noise would once in 1000, they are as wide as what is left or the scatter between independent parts of the
-    data asks for, sub-bands, inputs, records, stretches of time, whichever is more (`jackknife`); `widening` says by how much. A mode is
-    kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third, and if
-    the recorded inputs drive it, whatever else does (an F-test at 1e-9). Where inputs do not explain 2 % of the motion in a mode, a force
-    is not recorded: all modes are fitted together, each the others' tails. Tones that no input holds are taken out of the outputs before.
-    What is seen and is none of the modes is listed as `peaks`. A pure delay of all outputs that bends modes is taken out, and told
-    (`common_delay`). Lines of responses may lie unevenly, as those of stepped sines do.
-    Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or
-    are too short.
+    `what` is a record, or several of the same stage (six with one actuator each form one test), or responses of an analyser. `known`
+    spectra of the records, one each, are not computed again. Candidates are the stable poles of pLSCF on H1. Each group of near ones is
+    then fitted by maximum likelihood to the transform of the whole record, with its transient, without window and leakage. Inputs are
+    assumed exact, outputs' noise of slowly varying density; intervals are valid for noise correlated between outputs too (Pintelon &
+    Schoukens 2012, ch. 9 and 10). If the residual near a mode exceeds noise (probability 1/1000), they are inflated to the residual or to
+    the scatter between independent parts of the data (sub-bands, inputs, records, time intervals), whichever is larger (`jackknife`); see
+    `widening`. A mode is kept if its removal costs more likelihood than noise at 1e-9, three times that for damping known worse than to a
+    third. The recorded inputs must also excite it (an F-test at 1e-9). If inputs leave 2 % of a mode's motion unexplained, a force is
+    unrecorded: all modes are then fitted together. Tones absent from the inputs are removed from the outputs before.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> found = identify(one_mode_record())
@@ -78,7 +73,7 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     found = _identify_once(seen, search)
     if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
         return _with_doubts(_without_delay(seen, search, found))
-    # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
+    # Resonances sharper than the segment resolution, and impacts, leave no stable pole: search again.
     records = [what] if isinstance(what, Record) else list(what)
     longer = choose_segments(records, _FEW) if len(found.inputs) > 1 else whole_segment(records)
     seen = evidence(what, longer)
@@ -87,13 +82,13 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
 
 
 def _with_doubts(found: Identified) -> Identified:
-    """What was found, with a warning for every channel that comes later than the others."""
+    """Result with a warning for every channel with more delay than the others."""
     late = tuple(late_channels(found))
     return replace(found, data_warnings=(*found.data_warnings, *late)) if late else found
 
 
 def _without_delay(known: Evidence, search: Search, found: Identified) -> Identified:
-    """The modes with the delay of all outputs taken out, where one is told that bends them."""
+    """Modes after correction of a significant common delay of all outputs."""
     total = 0.0
     for _ in range(_PASSES):
         later = common_delay(found)
@@ -132,14 +127,14 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
         require(few_lines(known, chosen, int(np.sum((lines >= chosen[0]) & (lines <= chosen[1])))))
         return chosen
     what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are asked for; the data reach from {low:.4g} to {high:.4g} Hz"
-    require([Finding(known.where, what, "Ask for a band within, or record faster or longer")])
+    require([Finding(known.where, what, "Request a band within it, or record faster or longer")])
     return low, high
 
 
 def _candidates(
     known: Evidence, band: tuple[float, float], search: Search
 ) -> tuple[tuple[Stabilisation, ...], tuple[Candidate, ...], Reach]:
-    """Candidates, and the band that was searched: where lines are few, no polynomial can be fitted to them."""
+    """Candidates, and the searched band, which needs enough lines for a polynomial."""
     low, high = 0.0, 0.0
     diagrams: list[Stabilisation] = []
     candidates: list[tuple[Candidate, ...]] = []
@@ -178,7 +173,7 @@ def _fit_groups(
 
 
 def _widen_doubted(known: Evidence, candidates: tuple[Candidate, ...], fitted: list[Found]) -> list[Found]:
-    """Bands with the scatter between parts of the record in the deviations of the modes near which the fit leaves more than noise."""
+    """Bands with the scatter between parts of the record in the deviations of modes with a residual above noise."""
     found = list(fitted)
     poles = np.array([candidate.pole for candidate in candidates])
     for parts in sorted({_parts(known, each) for each in found} - {1}):
@@ -190,9 +185,9 @@ def _widen_doubted(known: Evidence, candidates: tuple[Candidate, ...], fitted: l
 
 
 def _parts(known: Evidence, found: Found) -> int:
-    """Into how many parts a record is cut to see whether its modes hold still: up to eight, none shorter than their slowest decay to 1/e.
+    """Number of parts of a record for a check of stationarity: up to eight, none shorter than their slowest decay to 1/e.
 
-    1 where there is no doubt, where fewer than three would be, or where there are several records: those are parts.
+    Returns 1 without a residual above noise, for fewer than three parts, or for several records, which are parts.
     """
     doubted = -2.0 * np.pi * np.real(found.modal.poles)[found.misfit > 1.0]
     if known.stored or not len(doubted) or len(found.band.cells.columns) > 1:
@@ -202,16 +197,16 @@ def _parts(known: Evidence, found: Found) -> int:
 
 
 def _measure_drives(known: Evidence, fitted: list[Found]) -> list[Drive]:
-    """Whether recorded inputs drive the modes, band by band. Responses say nothing of what else shook the stage."""
+    """Test whether recorded inputs excite the modes, band by band. Responses have no information on other excitation."""
     if all(each.band.inputs == each.band.cells.width for each in fitted):
         return [Drive(np.zeros(len(each.modal.poles)), np.zeros(len(each.modal.poles))) for each in fitted]
     return measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
 
 
 def _keep_driven(fitted: list[Found], drives: list[Drive]) -> tuple[list[Found], list[Lost], Array]:
-    """Modes that recorded inputs drive, resonances that they do not, and the share of each mode's motion that is not theirs.
+    """Modes excited by recorded inputs, other resonances, and the unexplained share of each mode's motion.
 
-    What is refused stays in the fit: it takes the motion that is not the other modes'.
+    Rejected resonances stay in the fit, because they represent motion of other modes.
     """
     refused = [
         Lost(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
@@ -279,7 +274,7 @@ def _join(parts: list[Modal], inputs: int, outputs: int) -> Modal:
 
 
 def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> tuple[Array, Array, Array]:
-    """Shapes (largest component 1), participations in rad/s and units of the channels, deviations of the shapes."""
+    """Convert shapes (largest component 1), participations in rad/s, units of the channels, and deviations of the shapes."""
     shapes = modal.shapes * known.output_scale[:, None]
     if not shapes.shape[1]:
         return shapes, modal.participation / known.input_scale, wide
@@ -294,7 +289,7 @@ def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> 
 
 
 def close_groups(poles: Array) -> tuple[tuple[int, ...], ...]:
-    """Modes nearer to the next than the mean of their half-widths, in groups."""
+    """Group modes closer to the next than the mean of their half-widths."""
     groups: list[list[int]] = []
     for index in range(len(poles)):
         before = groups[-1][-1] if groups else None

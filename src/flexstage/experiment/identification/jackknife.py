@@ -1,4 +1,4 @@
-"""How far modes move as parts of the data are left out: deviations that hold where the model does not."""
+"""Jackknife deviations of modes, from omission of parts of the data: valid even if the model is not."""
 
 from __future__ import annotations
 
@@ -14,16 +14,15 @@ _OCTAVES = 6
 
 
 def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
-    """Deviations (k,) of poles in Hz, of real and of imaginary part, from leaving out one group of cells after the other.
+    """Compute deviations (k,) of poles in Hz, of real and of imaginary part, by omitting one group of cells at a time.
 
-    sigma^2 = (G - 1)/G sum |d_g|^2 / 2, with d_g the pole's move without group g by a Newton step, -(I - I_g)^-1 s_g, where I_g and s_g
-    are the group's share of information and gradient (Tukey 1958; CR3 of Bell & McCaffrey 2002). It asks only that groups err
-    independently of one another: however what the fit leaves is correlated within a group, it counts once. Few groups say little about
-    their scatter: sigma is multiplied by Student's t over the normal's 1.96, with 2 (sum |d|^2)^2 / sum |d|^4 degrees of freedom
-    (Satterthwaite 1946), at most 2 (G - 1), so that 1.96 sigma is half of a 95 % interval. An error that moves the answers of all groups
-    alike is not seen.
+    sigma^2 = (G - 1)/G sum |d_g|^2 / 2, with d_g the pole's change without group g by a Newton step, -(I - I_g)^-1 s_g, where I_g and s_g
+    are the group's share of information and gradient (Tukey 1958; CR3 of Bell & McCaffrey 2002). It requires only independent errors of
+    different groups, with any correlation within a group. For few groups sigma is multiplied by Student's t over the normal's 1.96, with 2
+    (sum |d|^2)^2 / sum |d|^4 degrees of freedom (Satterthwaite 1946), at most 2 (G - 1), so that 1.96 sigma is half of a 95 % interval. A
+    common error of all groups is not detected.
 
-    `groups` (c,) are the numbers of each cell's group, from 0 on.
+    `groups` (c,) are the group numbers of the cells, from 0.
 
     >>> from flexstage.experiment.identification.confidence import deviations
     >>> from flexstage.experiment.example import one_mode_band
@@ -50,9 +49,9 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
 
 
 def sub_bands(band: Band, pole: complex) -> Array:
-    """Groups (c,) of cells: those within a half-width of a pole, and on each side each octave of distance from there on.
+    """Define groups (c,) of cells: those within a half-width of a pole, and on each side each further octave of distance.
 
-    What a wrong model leaves near a resonance changes over its half-width, and further away over the distance.
+    The residual of a wrong model varies over the half-width near a resonance, and over the distance further away.
 
     >>> from flexstage.experiment.example import POLE, one_mode_band
     >>> sub_bands(one_mode_band()[0], POLE).tolist()

@@ -1,4 +1,4 @@
-"""Maximum-likelihood modes of one band: poles, participations and shapes at once, from the cells of records."""
+"""Maximum-likelihood estimation of the modes of one band: poles, participations and shapes together, from the cells of records."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _DIGITS = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Modal:
-    """Modes of a band: H = sum of shape participation / (j f - pole), beside what lies outside.
+    """Modes of a band: H = sum of shape participation / (j f - pole), plus terms of modes outside.
 
     `poles` (k,) in Hz (rad/s over 2 pi), `participation` (k, m+b) of the inputs and of the blocks' transients, `shapes` (p, k).
     """
@@ -32,7 +32,7 @@ class Modal:
     shapes: Array
 
     def without(self, index: int) -> Modal:
-        """The modes but one."""
+        """Copy without one mode."""
         kept = [each for each in range(len(self.poles)) if each != index]
         return Modal(self.poles[kept], self.participation[kept], self.shapes[:, kept])
 
@@ -41,9 +41,9 @@ class Modal:
 class Band:
     """Data of one band: its cells, and the noise variance of every output per line in every cell (p, c).
 
-    `background` (c, b, 8) are the functions that stand for what lies outside, as Legendre coefficients in every cell. `smear` says how
-    windows have smeared the lines, if they have; `shape` (p, c) how the noise variance is known to go with frequency; `rounding` (p,) the
-    variance per line that rounding leaves; `inputs` how many of the drive's columns are inputs (absent: all), transients follow.
+    `background` (c, b, 8) are the basis functions of modes outside, as Legendre coefficients in every cell. `smear` describes the smearing
+    of lines by windows, if any. `shape` (p, c) is the known relative noise over frequency, `rounding` (p,) the variance per line by
+    rounding. `inputs` is the number of drive columns that are inputs (default: all), followed by transients.
     """
 
     cells: Cells
@@ -57,7 +57,7 @@ class Band:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Modes fitted to a band, twice the negative log-likelihood halved (`cost`: chi-square per complex number) and Fisher information.
+    """Modes fitted to a band, with the negative log-likelihood (`cost`: chi-squared per complex number) and Fisher information.
 
     `information` is complex and of the parameters (poles; participation row by row; shapes output by output).
     """
@@ -70,7 +70,7 @@ class Fit:
 
 @dataclass(frozen=True, eq=False)
 class _Background:
-    """Per output: Gram matrix (p, q, q) of the background's functions times inputs, scaled by `scale` (p, q), `beside` so many others."""
+    """Gram matrix per output (p, q, q) of background functions times inputs, over `scale` (p, q); `beside`: the number of others."""
 
     beside: int
     gram: Array
@@ -79,9 +79,9 @@ class _Background:
 
 @dataclass(frozen=True, eq=False)
 class _Sums:
-    """Per output: Gram matrix (p, f, n, f, n) of functions times inputs, products with data (p, f, n), data's own power (p,).
+    """Sums per output: Gram matrix (p, f, n, f, n) of functions times inputs, products with data (p, f, n), data power (p,).
 
-    `background` is what was eliminated, if it was.
+    `background` is the eliminated part, if any.
     """
 
     gram: Array
@@ -91,10 +91,10 @@ class _Sums:
 
 
 def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
-    """The modes that maximise the likelihood, by Levenberg-Marquardt from `start`.
+    """Maximise the likelihood of the modes by the Levenberg-Marquardt method from `start`.
 
     The residual is analytic in all parameters, so that complex least squares apply: noise is circular and independent between lines and
-    outputs. It stops early once the cost is above `enough` and promises to stay there.
+    outputs. Stops early if the cost exceeds `enough` and is predicted to stay there.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())
@@ -134,7 +134,7 @@ def _as_fit(modal: Modal, cost: float, information: Array, *, converged: bool) -
 
 
 def _step(information: Array, gradient: Array, damping: float) -> tuple[Array, float]:
-    """A damped Newton step and the fall of the cost it promises."""
+    """Damped Newton step, and its predicted cost reduction."""
     scale = np.real(np.diagonal(information))
     scale = np.maximum(scale, 1e-12 * np.max(scale))
     step = np.linalg.solve(information + damping * np.diag(scale), gradient)
@@ -142,7 +142,7 @@ def _step(information: Array, gradient: Array, damping: float) -> tuple[Array, f
 
 
 def with_shapes(band: Band, poles: Array, participation: Array) -> Modal:
-    """Shapes by linear least squares for given poles and participations of the inputs; transients begin at nought.
+    """Compute shapes by linear least squares for given poles and input participations; transients start at zero.
 
     >>> from flexstage.experiment.example import POLE, one_mode_band
     >>> round(abs(with_shapes(one_mode_band()[0], np.array([POLE]), np.ones((1, 1))).shapes[0, 0]))
@@ -161,7 +161,7 @@ def with_shapes(band: Band, poles: Array, participation: Array) -> Modal:
 
 
 def residual_power(band: Band, modal: Modal) -> Array:
-    """Powers and cross powers (p, p, c) of what modes and background leave in every cell, the first output's conjugate.
+    """Compute residual powers and cross powers (p, p, c) in every cell, the first output conjugated.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -179,7 +179,7 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Block by block, the numbers of its cells and the factors (p, c, 8, n) of Z in them that modes and background amount to.
+    """Compute, block by block, the cell indices and the factors (p, c, 8, n) of Z in them by modes and background.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> [len(chosen) for chosen, _ in explained_share(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
@@ -193,7 +193,7 @@ def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
 
 
 def noise(band: Band, modal: Modal) -> Array:
-    """Noise variance per line of every output in every cell (p, c), from what modes and background leave: means over 100 lines or more.
+    """Estimate the noise variance per line of every output in every cell (p, c) from the residual: means over 100 lines or more.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -207,11 +207,10 @@ def noise(band: Band, modal: Modal) -> Array:
 
 
 def silence(cells: Cells, rounding: Array | float) -> Array:
-    """The least noise variance (p, c) per line that is believed, however still the record.
+    """Compute the lower bound of the noise variance (p, c) per line.
 
-    Cells hold responses to six digits. That error e is the same at all N lines: it does not average out, and with a variance of N e^2
-    times the power it cannot pass for a mode, and intervals are not narrower than it. `rounding` (p,) is the variance that rounding the
-    samples leaves where an output shows nothing else.
+    Cells store responses to six digits. That error e is equal at all N lines and does not average out. A variance of N e^2 times the power
+    prevents false modes and too narrow intervals. `rounding` (p,) is the variance by sample rounding of an output without other noise.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells
@@ -222,11 +221,11 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
 
 
 def scatter(band: Band, modal: Modal) -> Array:
-    """Covariance of the gradient, noise of outputs correlated as what is left shows: with it, deviations hold for noise of that kind too.
+    """Estimate the gradient's covariance, with the noise correlation of the output residuals, for deviations under such noise.
 
-    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Noise is taken as
-    even over 25 lines, not over 100: what a force that is not recorded leaves follows the resonances. Where less is left than `silence`,
-    that counts. Of the parameters of `Fit.information`.
+    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Noise is constant
+    over 25 lines, not over 100: the residual of an unrecorded force follows the resonances. `silence` is the lower bound. For the
+    parameters of `Fit.information`.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())
@@ -250,9 +249,9 @@ def scatter(band: Band, modal: Modal) -> Array:
 
 
 def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
-    """What each group of cells adds to gradient (g, q) and information (g, q, q), of the parameters of `Fit.information`.
+    """Compute the contribution of each group of cells to gradient (g, q) and information (g, q, q) (see `Fit.information`).
 
-    `groups` (c,) are the numbers of each cell's group, from 0 on. At the fit the gradients add up to nought.
+    `groups` (c,) are the group numbers of the cells, from 0. At the fit the gradients sum to zero.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -283,7 +282,7 @@ def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
 
 
 def _derivatives(band: Band, modal: Modal) -> tuple[Array, list[Array]]:
-    """The functions (c, f, 8) of modes and background, and by output the derivatives (f n, q) of their factors by all parameters."""
+    """Functions (c, f, 8) of modes and background, and by output the derivatives (f n, q) of their factors by all parameters."""
     near = _legendre_functions(band, modal.poles)
     functions = np.concatenate([near, band.background], axis=1)
     size, outputs = near.shape[1] * band.cells.width, len(modal.shapes)
@@ -292,7 +291,7 @@ def _derivatives(band: Band, modal: Modal) -> tuple[Array, list[Array]]:
 
 
 def _add_background(gram: Array, jacobian: Array, size: int) -> Array:
-    """Derivatives of all factors: those of the background follow the modes'."""
+    """Derivatives of all factors, the background's after the modes'."""
     scale = 1.0 / np.sqrt(np.real(np.diagonal(gram)[size:]))
     inner = gram[size:, size:] * np.outer(scale, scale) + 1e-13 * np.eye(len(scale))
     rest = -np.linalg.solve(inner, (gram[size:, :size] @ jacobian) * scale[:, None]) * scale[:, None]
@@ -300,13 +299,13 @@ def _add_background(gram: Array, jacobian: Array, size: int) -> Array:
 
 
 def _free_share(band: Band, modal: Modal) -> float:
-    """Share of the lines that the fit has not used up."""
+    """Share of the lines not used by fit parameters."""
     used = band.background.shape[1] * band.cells.width + len(modal.poles) * (1.0 + band.cells.width / len(modal.shapes))
     return max(0.1, 1.0 - used / float(np.sum(band.cells.count)))
 
 
 def _pool_cells(power: Array, cells: Cells, least: int = _NOISE_LINES) -> Array:
-    """Means per line of powers (q, c), over neighbouring cells of `least` lines or more together."""
+    """Means per line of powers (q, c), over neighbouring cells of at least `least` lines together."""
     found = np.empty_like(power)
     for block in range(len(cells.columns)):
         chosen = np.flatnonzero(cells.block == block)
@@ -320,9 +319,9 @@ def _pool_cells(power: Array, cells: Cells, least: int = _NOISE_LINES) -> Array:
 
 
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
-    """An orthonormal basis (c, b, 8) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
+    """Construct an orthonormal basis (c, b, 8) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
 
-    Directions that add less to it than the 1e-6 to which cells hold numbers are left out.
+    Directions below 1e-6, the precision of cells, are omitted.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> background(one_mode_band()[0].cells, np.zeros(0), 1).shape[1:]
@@ -365,7 +364,7 @@ def _legendre_functions(band: Band, poles: Array) -> Array:
 
 
 def _pairs(poles: Array) -> list[tuple[int, int]]:
-    """Poles nearer to one another than half a half-width: their shapes mix, and are turned within their plane by parameters of its own."""
+    """Poles closer than half a half-width: their shapes mix, with additional rotation parameters."""
     return [
         (first, second)
         for second in range(len(poles))
@@ -422,7 +421,7 @@ def _products(left: Array, right: Array, own: Array) -> Array:
 
 
 def _sums(band: Band, poles: Array, known: _Background | None = None) -> _Sums:
-    """Sums of the modes' functions, the background eliminated: what is `known` of it holds for any poles."""
+    """Sums of the modes' functions, with the background eliminated: its `known` part is independent of the poles."""
     cells, weights, near = band.cells, 1.0 / band.variance, _legendre_functions(band, poles)
     functions = np.concatenate([near, band.background], axis=1)
     outputs, kept, total = len(weights), near.shape[1], cells.width
@@ -444,7 +443,7 @@ def _sums(band: Band, poles: Array, known: _Background | None = None) -> _Sums:
 
 
 def _background_sums(band: Band, weights: Array, functions: Array) -> _Background:
-    """Taken from products with all functions: BLAS rounds by place, and close modes follow its last digit."""
+    """Computed from products with all functions: BLAS rounding depends on position, and close modes are sensitive to it."""
     count = band.background.shape[1]
     kept, size = functions.shape[1] - count, count * band.cells.width
     gram = _gram(band.cells, weights, band.background, functions)[:, :, :, kept:].reshape(len(weights), size, size)
@@ -453,7 +452,7 @@ def _background_sums(band: Band, weights: Array, functions: Array) -> _Backgroun
 
 
 def _coefficients(band: Band, modal: Modal) -> Array:
-    """Factors (p, f, n) of the modes' functions and, best for them, of the polynomials."""
+    """Factors (p, f, n) of the modes' functions and the corresponding optimal polynomials."""
     count = len(modal.poles)
     functions = np.concatenate([resonances(band, modal.poles), band.background], axis=1)
     raw = _raw_sums(band, functions)
@@ -510,7 +509,7 @@ def _normal(sums: _Sums, modal: Modal) -> tuple[Array, Array]:
 
 
 def _apply_step(modal: Modal, step: Array) -> Modal:
-    """The modes after a step; where near poles are mixed, H = C (j f - A)^-1 B is brought back to modes by the eigenvectors of A."""
+    """Modes after a step; for mixed near poles H = C (j f - A)^-1 B is diagonalised by the eigenvectors of A."""
     count, total = modal.participation.shape
     outputs = len(modal.shapes)
     poles, participation, shapes, mixing = np.split(step, np.cumsum([count, count * total, outputs * count]))

@@ -1,4 +1,4 @@
-"""Poly-reference least-squares complex frequency-domain estimator (pLSCF): poles of rising order from frequency responses."""
+"""Poly-reference least-squares complex frequency-domain estimator (pLSCF): poles of increasing order from frequency responses."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.base.number import Array
 
 _SPAN = 1.0
-"""Angle, in units of pi, that the band takes on the unit circle: the rest keeps the band's two ends apart."""
+"""Angle of the band on the unit circle, in units of pi: the remainder separates the band's two ends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +32,12 @@ class Poles:
 
 
 def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) -> tuple[Poles, ...]:
-    """Poles of every order from responses H (f, p, m) at `frequencies` in Hz, with weights (f, p) of the outputs.
+    """Estimate the poles of every order from responses H (f, p, m) at `frequencies` in Hz, with weights (f, p) of the outputs.
 
-    A right matrix fraction H = B(z) A(z)^-1 with common denominator, complex coefficients and z = exp(s T), the band mapped to half a
-    circle (Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395). Poles are unwrapped about the band's middle, and a
-    pole's participation is the left null vector of A there: near it A^-1 is v w^H / (z - z_r), and the rows of H follow w^H. Only stable
-    poles within the band are returned.
+    Right matrix fraction H = B(z) A(z)^-1 with common denominator, complex coefficients and z = exp(s T), the band mapped to half a circle
+    (Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395). Poles are unwrapped about the band's centre. A pole's
+    participation is the left null vector of A: near it A^-1 is v w^H / (z - z_r), and the rows of H follow w^H. Returns only stable poles
+    within the band.
 
     >>> lines = np.linspace(8.0, 12.0, 81)
     >>> one = 1.0 / (2j * np.pi * lines - (-1.0 + 2j * np.pi * 10.0))
@@ -70,7 +70,7 @@ def _products(angles: Array, rows: Array, weight: Array, highest: int) -> tuple[
 
 
 def _reduce(weight: Array, crossed: Array, power: Array, size: int) -> Array:
-    """T - S^H R^-1 S of one output: the numerator eliminated."""
+    """Schur complement T - S^H R^-1 S of one output: the numerator eliminated."""
     middle = (len(weight) - 1) // 2
     lag = middle + np.arange(size)[None, :] - np.arange(size)[:, None]
     count = crossed.shape[1]
@@ -80,11 +80,11 @@ def _reduce(weight: Array, crossed: Array, power: Array, size: int) -> Array:
 
 
 def _poles(reduced: Array, order: int, *, count: int, low: float, high: float, period: float) -> Poles:
-    """Roots of det A, with the coefficient of the lowest power fixed: then mathematical poles come out unstable."""
+    """Roots of det A with the coefficient of the lowest power fixed, which makes mathematical poles unstable."""
     rest = reduced[count:, count:]
     solved = -np.linalg.lstsq(rest, reduced[count:, :count], rcond=None)[0]
     coefficients = np.concatenate([np.eye(count), solved]).reshape(order + 1, count, count)
-    # x = 1/z turns the fixed coefficient into the leading one; A^T acts on the left null vectors of A.
+    # x = 1/z makes the fixed coefficient the leading one; A^T acts on the left null vectors of A
     companion = np.zeros((order * count, order * count), dtype=complex)
     companion[count:, :-count] = np.eye((order - 1) * count)
     companion[:count] = -np.concatenate([coefficients[power].T for power in range(1, order + 1)], axis=1)

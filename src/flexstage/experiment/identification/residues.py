@@ -1,4 +1,4 @@
-"""Frequency responses from modes: the sum over modes, and what modes outside the band leave (least-squares frequency domain, LSFD)."""
+"""Frequency responses from modes: the modal sum, and residual terms of modes outside the band (least-squares frequency domain, LSFD)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from flexstage.base.number import Array
 
 
 def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Array) -> Array:
-    """H (f, p, m) = sum of shape participation / (j w - pole) and its conjugate partner, poles (k,) in rad/s, frequencies in Hz.
+    """Compute H (f, p, m) = sum of shape participation / (j w - pole) and its conjugate, poles (k,) in rad/s, frequencies in Hz.
 
     Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1. Shapes (p, k), participation (k, m).
 
@@ -25,9 +25,9 @@ def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Ar
 
 
 def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
-    """Lower and upper residual (2, p, m): rest (f, p, m) = lower / w^2 + upper, least squares with weights (f, p), frequencies above 0.
+    """Fit lower and upper residual (2, p, m): rest (f, p, m) = lower / w^2 + upper, weights (f, p), frequencies above 0.
 
-    They stand for modes below and above the band: mass and stiffness lines; real, as at frequencies where those modes hardly damp.
+    They represent modes below and above the band, as mass and stiffness lines; real, because those modes have little damping in the band.
 
     >>> lines = np.array([1.0, 2.0, 3.0])
     >>> remainder(lines, 5.0 + 1.0 / (2 * np.pi * lines[:, None, None]) ** 2, np.ones((3, 1))).round(9).ravel().tolist()
@@ -44,7 +44,7 @@ def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
 
 
 def remainder_sum(frequencies: Array, residuals: Array) -> Array:
-    """The part (f, p, m) of a response that lower and upper residual (2, p, m) stand for.
+    """Evaluate the response (f, p, m) of lower and upper residual (2, p, m).
 
     >>> remainder_sum(np.array([1.0]), np.array([[[0.0]], [[5.0]]])).ravel().tolist()
     [5.0]

@@ -1,1 +1,1 @@
-"""Records of tests: channels, units, clocks and their health."""
+"""Test records: channels, units, clocks and checks."""

@@ -1,4 +1,4 @@
-"""The clock of a record: the sampling rate that times or printed steps mean, and gaps between samples."""
+"""Sampling clock of a record: the rate from times or printed steps, and gaps between samples."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from flexstage.experiment.records.record import RATES, Channel, Record, Samples
 _LISTED = 5
 _BLOCK = 262_144
 TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
-"""Seconds in the units that times may have."""
+"""Seconds per time unit."""
 
 
 def round_nominal(value: float, uncertainty: float) -> float:
-    """The roundest number a rounded value can have meant: it or its inverse has the fewest digits within the relative uncertainty.
+    """Find the roundest number consistent with a rounded value: fewest digits, or fewest digits of the inverse.
 
-    A step printed as 4.88281e-04 s stands for 2048 Hz, not for 2048.002.
+    A step printed as 4.88281e-04 s means 2048 Hz, not 2048.002.
 
     >>> round_nominal(1 / 4.88281e-04, 1e-6), round_nominal(1 / 0.333, 1e-3), round_nominal(1 / 0.195313, 3e-6), round_nominal(3.14159, 0.0)
     (2048.0, 3.0, 5.12, 3.14159)
@@ -52,7 +52,7 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """What times say: the rate in Hz, the first time in s, stretches (start, stop) of samples without a gap, the times they start at."""
+    """Clock of times: rate in Hz, first time in s, intervals (start, stop) of samples without a gap, and their start times."""
 
     rate: float
     start: float
@@ -61,15 +61,15 @@ class Clock:
 
     @property
     def longest(self) -> tuple[int, int]:
-        """The longest stretch without a gap."""
+        """Longest interval without a gap."""
         return max(self.stretches, key=lambda stretch: stretch[1] - stretch[0])
 
 
 def read_clock(times: Array, where: str) -> Clock:
-    """The clock of times (n,) in s. Raises `DesignError` where they are none: too few, no numbers, repeated, not evenly spaced.
+    """Determine the clock of times (n,) in s. Raises `DesignError` for too few, non-finite, repeated or uneven times.
 
-    A step is a gap where it differs by more than half from the usual one, the median; the rate is that of all others, as round as the
-    rounding of the times allows.
+    A step is a gap if it differs by more than half from the median. The rate follows from the other steps, rounded within the precision of
+    the times.
 
     >>> read_clock(np.array([0.0, 0.1, 0.2, 0.7, 0.8]), "a.csv").stretches
     ((0, 3), (3, 5))
@@ -80,16 +80,16 @@ def read_clock(times: Array, where: str) -> Clock:
     jumps = 1 + np.flatnonzero(~regular)
     require(_problems(times, typical, len(jumps), where))
     total, spread = float(np.sum(steps[regular])), float(np.max(np.abs(steps[regular] - typical)))
-    resolution = max(float(np.spacing(np.max(np.abs(times)))), spread)  # rounding of doubles; coarser rounding shows in the spread
+    resolution = max(float(np.spacing(np.max(np.abs(times)))), spread)  # double precision; coarser rounding appears in the scatter
     rate = round_nominal(int(np.count_nonzero(regular)) / total, max(resolution / total, 1e-12))
     starts = [0, *jumps.tolist()]
     return Clock(rate, float(times[0]), tuple(pairwise([*starts, len(times)])), tuple(times[starts].tolist()))
 
 
 def determine_clock(samples: Samples, options: Options, where: str, *, scale: float = 1.0, stated: float | None = None) -> Clock:
-    """The clock of the first of some samples, times in units of `scale` [s]; raises `DesignError` with what is wrong with it.
+    """Determine the clock of the first of some samples, times in units of `scale` [s]; raises `DesignError` with its faults.
 
-    A rate that the file states beside the times holds where they agree within a thousandth.
+    A rate specified in the file takes precedence if both agree within a thousandth.
 
     >>> from flexstage.experiment.records.record import InMemory
     >>> times = InMemory(np.array([[0.0], [0.1], [0.2], [0.7], [0.8]]))
@@ -104,12 +104,14 @@ def determine_clock(samples: Samples, options: Options, where: str, *, scale: fl
     if len(clock.stretches) > 1 and FaultTolerance.GAPS not in options.accept_faults:
         raise DesignError([_gaps(clock, where)])
     if stated is not None and abs(stated / clock.rate - 1.0) > 1e-3:
-        raise refuse(where, f"its times say {clock.rate:g} Hz, the file also states {stated:g} Hz", "State the rate that is right (rate)")
+        raise refuse(
+            where, f"contradictory rates: {clock.rate:g} Hz by its times, {stated:g} Hz in the file", "Specify the correct rate (rate)"
+        )
     return replace(clock, rate=stated or clock.rate)
 
 
 def clocked_record(channels: Iterable[Channel], samples: Samples, clock: Clock, options: Options, *, name: str, where: str) -> Record:
-    """The record of samples over the longest stretch of a clock: channels as the user says, those that count.
+    """Build the record of samples over the longest interval of a clock, with the selected channels.
 
     >>> from flexstage.experiment.records.record import Channel, InMemory
     >>> clock = Clock(1.0, 0.0, ((0, 1), (1, 3)), (0.0, 7.0))
@@ -122,7 +124,7 @@ def clocked_record(channels: Iterable[Channel], samples: Samples, clock: Clock, 
 
 
 def longest_stretch(record: Record, clock: Clock) -> Record:
-    """The longest stretch of a record without gaps, with the time it starts at; the record where there are none."""
+    """Extract the longest interval of a record without gaps, with its start time; unchanged without gaps."""
     if len(clock.stretches) < 2:
         return record
     return replace(record.part(*clock.longest), start=clock.starts[clock.stretches.index(clock.longest)])
@@ -140,17 +142,17 @@ def _gaps(clock: Clock, where: str) -> Finding:
 
 
 def _problems(times: Array, typical: float, jumps: int, where: str) -> Iterator[Finding]:
-    """The first thing that keeps times from being those of a clock."""
+    """First fault of times as a clock."""
     count, broken = len(times), int(np.count_nonzero(~np.isfinite(times)))
     if count < 2:
         yield Finding(where, f"it has {count} samples", "Give a record of at least two samples")
     elif broken:
-        yield Finding(where, f"{broken} of {count} times are not numbers", "Mend them, or state the rate")
+        yield Finding(where, f"{broken} of {count} times are not numbers", "Correct them, or specify the rate")
     elif not typical > 0.0:
         what = f"its times do not rise: the usual step is {typical:.4g} s, from {times[0]:.6g} s to {times[-1]:.6g} s"
-        yield Finding(where, what, "Write times with enough digits to tell samples apart, or state the rate")
+        yield Finding(where, what, "Write times with more digits, or specify the rate")
     elif not RATES[0] <= 1.0 / typical <= RATES[1]:
         yield Finding(where, f"its usual step is {typical:.4g} s, which is none", "Write times in s, or state the rate")
     elif jumps > max(2, 0.01 * count):
         what = f"its samples are not evenly spaced: {jumps} of {count} steps differ by more than half from {typical:.4g} s"
-        yield Finding(where, what, "Resample the record evenly, or state the rate if only the times are wrong")
+        yield Finding(where, what, "Resample the record evenly, or specify the rate if only the times are wrong")

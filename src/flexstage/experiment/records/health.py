@@ -1,6 +1,6 @@
-"""Health of a record: what is wrong with it, by channel, and what is left of it when the user allows to go on.
+"""Checks of a record: faults by channel, and the usable remainder.
 
-Everything is looked at in one pass; all that is found is told at once. Nothing is left out or cut off unless `FaultTolerance` says so.
+One pass checks everything, and all faults are reported together. Data are omitted only if `FaultTolerance` accepts that.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from flexstage.experiment.records.unit import same_dimension, unit_problem
 _STILL, _STILL_SHARE = 32, 0.05
 _DEAD_BESIDE_OTHERS = 1e-5
 _PILE, _PILE_RATIO, _LEVELS = 8, 2.5, 16
-"""A quantised sine, not clipped, has at most 2.4 times as many samples on its highest level as on the next."""
+"""Clipping criteria: a quantised sine without clipping has at most 2.4 times as many samples on its highest level as on the next."""
 _EXPLAINED, _TIE = 0.9, 1e-6
 _SEGMENTS_AN_INPUT = 5
 _BROKEN_SHARE = 0.5
@@ -35,9 +35,9 @@ _UNWINDOWED = (
 
 @dataclass(frozen=True)
 class RecordRequirements(CheckedFields):
-    """Record requirements: `resolution` in Hz with so many `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
+    """Record requirements: `resolution` in Hz with a number of `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
 
-    `unrecorded` where nothing that drove the stage was recorded: there are no inputs then.
+    `unrecorded`: the excitation was not recorded, so that inputs are absent.
     """
 
     resolution: float | None = None
@@ -50,7 +50,7 @@ class RecordRequirements(CheckedFields):
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing wrong with a record: what allows to go on (None: nothing does), the channel it is about, and what is told of it."""
+    """Fault of a record: the tolerance that accepts it (None: none does), the channel, and the message."""
 
     kind: FaultTolerance | None
     channel: str
@@ -59,7 +59,7 @@ class Fault:
 
 @dataclass(frozen=True, eq=False)
 class Examination(InNotebook):
-    """What was found: all faults, and the numbers of every channel by name."""
+    """Result of the checks: all faults, and the statistics of every channel by name."""
 
     faults: tuple[Fault, ...]
     numbers: Mapping[str, Numbers]
@@ -67,7 +67,7 @@ class Examination(InNotebook):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What is told of all faults."""
+        """Findings for all faults."""
         return tuple(fault.finding for fault in self.faults)
 
     def channels(self, kinds: Iterable[FaultTolerance]) -> frozenset[str]:
@@ -81,10 +81,10 @@ _NEEDS = RecordRequirements()
 
 @check_arguments
 def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examination:
-    """All faults of a record.
+    """Find all faults of a record.
 
-    Samples that are no numbers; channels that are dead, constant, standing still, clipped or coarsely quantised; missing and unknown units;
-    inputs that others explain; roles and names that do not fit; too short, too slowly sampled.
+    Checks non-finite samples; dead, constant, frozen, clipped or coarsely quantised channels; missing and unknown units; dependent inputs;
+    wrong roles and names; duration and sampling rate.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> noise = np.random.default_rng(1).normal(size=(4096, 2)) * [1.0, 0.0]
@@ -107,10 +107,10 @@ def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examin
 def usable_record(
     record: Record, accept_faults: frozenset[FaultTolerance] = frozenset(), requirements: RecordRequirements = _NEEDS
 ) -> Record:
-    """The record as it can be used: as it is where it is sound, else without what `allow` allows to leave out.
+    """Return the usable record: unchanged without faults, else without the parts that `allow` accepts to omit.
 
-    Dead, dependent and unfitting channels go; of a record with gaps the longest whole stretch stays. Raises `DesignError` with every fault
-    that is not allowed.
+    Dead, dependent and unfitting channels are removed; of a record with gaps the longest whole interval remains. Raises `DesignError` with
+    every fault that is not accepted.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> noise = np.random.default_rng(1).normal(size=(4096, 3)) * [1.0, 0.0, 1.0]
@@ -134,7 +134,7 @@ def usable_record(
 
 
 def responses_findings(responses: Responses, requirements: RecordRequirements = _NEEDS) -> list[Fault]:
-    """Faults of stored responses: units, names, frequencies that do not rise or do not reach the highest mode, a coherence above one.
+    """Find faults of stored responses: units, names, frequencies not increasing or below the highest mode, a coherence above one.
 
     >>> one = Responses(np.array([1.0, 2.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.ones((2, 1, 1), complex))
     >>> [fault.finding.what for fault in responses_findings(one, RecordRequirements(highest=5.0))]
@@ -150,7 +150,7 @@ def responses_findings(responses: Responses, requirements: RecordRequirements = 
         faults.append(_fault(None, where, "", falling, "Export each frequency once, from the lowest to the highest"))
     elif requirements.highest is not None and requirements.highest > frequencies[-1]:
         what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {requirements.highest:g} Hz"
-        faults.append(_fault(FaultTolerance.SLOW, where, "", what, 'Measure a wider band, or accept "slow" to use what there is'))
+        faults.append(_fault(FaultTolerance.SLOW, where, "", what, 'Measure a wider band, or accept "slow" to use the available one'))
     if responses.coherence is not None:
         faults += _coherence(responses.coherence, where)
     return faults
@@ -161,12 +161,12 @@ def _fault(kind: FaultTolerance | None, where: str, channel: str, what: str, adv
 
 
 def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
-    """Some analysers write values above 1 where they averaged little."""
+    """Findings for coherence above 1, as some analysers write it for few averages."""
     outside = int(np.sum(~((coherence >= 0.0) & (coherence <= 1.0 + 1e-6))))
     if outside:
         low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
         what = f"its coherence runs from {low:g} to {high:g}, outside 0 to 1 in {outside} of {coherence.size} values"
-        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check what was exported, or accept "clipped" to cut it off there')
+        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check the export, or accept "clipped" to limit it')
 
 
 def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
@@ -182,7 +182,7 @@ def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault
             yield _fault(FaultTolerance.DEAD, where, name, dead, 'Check cable and range, or accept "dead" to leave it out')
         elif (clipped := _clipped(record, channel, numbers)) is not None:
             size = "wider" if clipped.startswith("it is clipped") else "smaller"
-            advice = f'Record with a {size} range, or accept "clipped" to use it as it is'
+            advice = f'Record with a {size} range, or accept "clipped" to use it unchanged'
             yield _fault(FaultTolerance.CLIPPED, where, name, clipped, advice)
 
 
@@ -212,11 +212,11 @@ def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
         return None
     start = record.start + numbers.still_from / record.rate
     stop = start + numbers.still / record.rate
-    return f"it stands still from {start:.6g} s to {stop:.6g} s, {numbers.still} of {record.length} samples"
+    return f"it is frozen from {start:.6g} s to {stop:.6g} s, {numbers.still} of {record.length} samples"
 
 
 def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | None:
-    """Whether a force is exactly zero after a blow, as analysers make it: what it did then was cut off."""
+    """Findings for a force that is exactly zero after an impact, as some analysers set it: the later force is unknown."""
     known = channel.unit and unit_problem(channel.unit) is None
     force = same_dimension(channel.unit, "N") if known else matches(channel.name, _HAMMERS)
     zeros = _stands_still(record, numbers) and numbers.still_at == 0.0 and numbers.still_from > 0 and numbers.low != numbers.high
@@ -228,13 +228,13 @@ def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | N
 
 
 def _faint(record: Record, found: RecordNumbers, channel: Channel, numbers: Numbers) -> str | None:
-    """A channel that is far weaker than all others of its kind."""
+    """Findings for a channel much weaker than all others of its kind."""
     pairs = zip(record.channels, found.channels, strict=True)
     kind = channel.unit, channel.role
     others = [each.rms for other, each in pairs if other is not channel and (other.unit, other.role) == kind and each.rms > 0.0]
     if not others or numbers.rms >= _DEAD_BESIDE_OTHERS * float(np.median(others)):
         return None
-    return f"its rms is {numbers.rms:.3g} {channel.unit}, that of the others of its kind {float(np.median(others)):.3g} {channel.unit}"
+    return f"its rms is {numbers.rms:.3g} {channel.unit} (others of its kind: {float(np.median(others)):.3g} {channel.unit})"
 
 
 def _clipped(record: Record, channel: Channel, numbers: Numbers) -> str | None:
@@ -261,24 +261,22 @@ def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
 
 
 def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
-    """Inputs that the others explain, one after another, until those left are independent."""
+    """Inputs explained by the others, one at a time, until the others are independent."""
     names = [channel.name for channel in record.inputs]
     alive = [number for number in range(len(names)) if np.real(found.input_spectra[:, number, number]).sum() > 0.0]
     while len(alive) > 1 and found.segments >= _SEGMENTS_AN_INPUT * len(alive):
         shares = _remove_bias(explained_share(found.input_spectra[:, alive][:, :, alive]), len(alive), found.segments)
-        worst = int(np.flatnonzero(shares >= shares.max() - _TIE)[-1])  # of those alike the last
+        worst = int(np.flatnonzero(shares >= shares.max() - _TIE)[-1])  # of equal ones the last
         if shares[worst] < _EXPLAINED:
             return
         name = names[alive.pop(worst)]
         what = f"{100.0 * shares[worst]:.3g} % of it is explained by the other inputs, {', '.join(names[number] for number in alive)}"
-        advice = (
-            'Drive the inputs with independent noise, or accept "dependent" to leave it out: its effect is then counted with the others'
-        )
+        advice = 'Drive the inputs with independent noise, or accept "dependent" to omit it: its effect then counts with the others'
         yield _fault(FaultTolerance.DEPENDENT, where, name, what, advice)
 
 
 def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
-    """Multiple coherence less what independent signals show with so few averages."""
+    """Multiple coherence less its bias for independent signals with so few averages."""
     lost = (inputs - 1) / segments
     return np.maximum(0.0, (shares - lost) / (1.0 - lost))
 
@@ -287,22 +285,22 @@ def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iter
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
             advice = 'Say what it is (inputs, outputs), or accept "names" to leave it out'
-            yield _fault(FaultTolerance.NAMES, where, channel.name, "it is neither known as an input nor as an output", advice)
+            yield _fault(FaultTolerance.NAMES, where, channel.name, "its role is unknown", advice)
     if requirements.unrecorded and record.inputs:
         what = f"{', '.join(each.name for each in record.inputs)}: taken for inputs, where none is said to have been recorded"
-        yield _fault(None, where, "", what, "Name the channels that count (only), or say that inputs were recorded")
+        yield _fault(None, where, "", what, "Select the channels (only), or specify recorded inputs")
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
         if not channels and not (requirements.unrecorded and kind == "input"):
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
             other = ", or say what else moved the stage (excitation)" if kind == "input" else ""
-            yield _fault(None, where, "", what, f"Name the {kind}s ({kind}s), by names or patterns{other}")
+            yield _fault(None, where, "", what, f"Select the {kind}s ({kind}s), by names or patterns{other}")
     yield from _name_faults(record.inputs, record.outputs, requirements, where)
 
 
 def _name_faults(
     inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], requirements: RecordRequirements, where: str
 ) -> Iterator[Fault]:
-    """Channels the stage does not have, and units that cannot be those of the stage's channels."""
+    """Findings for channels that the stage does not have, and units that contradict the stage's channels."""
     for kind, channels, expected in (("input", inputs, requirements.inputs), ("output", outputs, requirements.outputs)):
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
@@ -321,9 +319,9 @@ def _extent(record: Record, requirements: RecordRequirements, where: str) -> Ite
     if resolution is not None and record.duration * resolution < averages:
         required = f"at a resolution of {resolution:g} Hz, {averages} are required"
         what = f"{record.duration:.4g} s give {record.duration * resolution:.3g} averages {required}"
-        advice = f'Ask for {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
+        advice = f'Request {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
         yield _fault(FaultTolerance.SHORT, where, "", what, advice)
     if highest is not None and record.rate <= 2.0 * highest:
         what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {highest:g} Hz"
-        advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to find what lies below {0.5 * record.rate:g} Hz'
+        advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to identify modes below {0.5 * record.rate:g} Hz'
         yield _fault(FaultTolerance.SLOW, where, "", what, advice)

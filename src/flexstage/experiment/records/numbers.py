@@ -1,4 +1,4 @@
-"""Numbers of every channel of a record, gathered in one pass over its blocks: extremes, spread, standstill, what is missing."""
+"""Statistics of every channel of a record in one pass over its blocks: extremes, scatter, frozen values, missing samples."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Record, Role
 
 BLOCK = 1 << 19
-"""Numbers in a block, of all channels together."""
+"""Numbers per block, of all channels together."""
 _SEGMENT = 1024
 _KEPT = 2048
 
@@ -22,9 +22,9 @@ _KEPT = 2048
 class Numbers:
     """Statistics of the samples of one channel up to a block.
 
-    `broken` of `count` samples are not numbers, the first is number `first_broken`. From sample `still_from` the value stays `still_at` for
-    `still` samples, longer than anywhere else. `lows` and `highs` are enough of the extremes to tell a pile from a tail, `step` is the
-    smallest step but 0, `pairs` are the least and the highest value that two samples in a row have.
+    `broken` of `count` samples are not finite, the first is number `first_broken`. From sample `still_from` the value stays `still_at` for
+    `still` samples, the longest such interval. `lows` and `highs` are enough extremes to distinguish clipping from a tail. `step` is the
+    smallest nonzero step, `pairs` are the lowest and the highest value of two successive samples.
     """
 
     count: int = 0
@@ -43,7 +43,7 @@ class Numbers:
     _run: Annotated[int, INNER] = 0
 
     def add(self, values: Array) -> Numbers:
-        """Statistics with another block of samples."""
+        """Combine with the statistics of another block of samples."""
         finite = np.isfinite(values)
         held = values[finite]
         first = self.count + int(np.argmin(finite)) if self.first_broken < 0 and len(held) < len(values) else self.first_broken
@@ -89,23 +89,23 @@ class Numbers:
 
     @property
     def low(self) -> Annotated[float, VIEW]:
-        """The least value."""
+        """Lowest value."""
         return float(self.lows.min(initial=np.inf))
 
     @property
     def high(self) -> Annotated[float, VIEW]:
-        """The highest value."""
+        """Highest value."""
         return float(self.highs.max(initial=-np.inf))
 
     @property
     def levels(self) -> Annotated[float, VIEW]:
-        """The range over the smallest step."""
+        """Range over the smallest step."""
         return (self.high - self.low) / self.step if np.isfinite(self.step) else 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class RecordNumbers:
-    """Numbers of all channels; the longest stretch (start, stop) in which all are numbers; mean cross-spectra of the inputs, unscaled."""
+    """Statistics of all channels; the longest interval (start, stop) of finite numbers; unscaled mean cross-spectra of the inputs."""
 
     channels: tuple[Numbers, ...]
     stretch: tuple[int, int]
@@ -114,7 +114,7 @@ class RecordNumbers:
 
 
 def gather(record: Record) -> RecordNumbers:
-    """One pass over a record. Memory is that of a block, whatever its length.
+    """Gather the statistics in one pass over a record, with the memory of one block.
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> found = gather(in_memory([Channel("S1", "um")], 1.0, np.array([[0.0], [1.0], [1.0], [np.nan]])))
@@ -127,7 +127,7 @@ def gather(record: Record) -> RecordNumbers:
     channels = (Numbers(),) * len(record.channels)
     seen = begun = 0
     longest = (0, 0)
-    with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
+    with np.errstate(over="ignore", invalid="ignore"):  # squares of the largest doubles overflow
         for block in record.blocks(max(1, BLOCK // len(channels) // _SEGMENT) * _SEGMENT):
             channels = tuple(numbers.add(values) for numbers, values in zip(channels, block.T, strict=True))
             stops = np.append(np.flatnonzero(~np.isfinite(block).all(axis=1)), len(block)) + seen
@@ -143,7 +143,7 @@ def gather(record: Record) -> RecordNumbers:
 
 
 def _segment_spectra(inputs: Array, size: int) -> tuple[Array, int]:
-    """The sum of cross-spectra of segments with a Hann window, and their number; segments with gaps are left out."""
+    """Sum of cross-spectra of segments with a Hann window, and their number; segments with gaps are omitted."""
     count = len(inputs) // size
     pieces = inputs[: count * size].reshape(count, size, inputs.shape[1])
     pieces = pieces[np.isfinite(pieces).all(axis=(1, 2))]
@@ -157,7 +157,7 @@ def _least(values: Array) -> Array:
 
 
 def count_ends(values: Array) -> tuple[int, int]:
-    """How many of the highest values are equal to the highest one, and how many to the next.
+    """Count how many of the highest values equal the highest one, and how many the next.
 
     >>> count_ends(np.array([1.0, 3.0, 3.0, 2.0]))
     (2, 1)
@@ -167,9 +167,9 @@ def count_ends(values: Array) -> tuple[int, int]:
 
 
 def explained_share(spectra: Array) -> Array:
-    """Share of each input's power that is explained by the others, (inputs,): 1 - sum of 1/(G^-1)_ii over sum of G_ii.
+    """Compute the share of each input's power explained by the others, (inputs,): 1 - sum of 1/(G^-1)_ii over sum of G_ii.
 
-    Multiple coherence, weighted with power (Bendat and Piersol, Random Data, 4th edition, section 7.3); delays within a segment count.
+    Power-weighted multiple coherence (Bendat and Piersol, Random Data, 4th edition, section 7.3); includes delays within a segment.
 
     >>> explained_share(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
     [0.64, 0.64]

@@ -1,4 +1,4 @@
-"""What a user says about a record: which channels are inputs and outputs, their units, and what may be used although it is bad."""
+"""User options for a record: roles of channels, units, and accepted faults."""
 
 from __future__ import annotations
 
@@ -17,56 +17,56 @@ INPUT_NAMES = (
     *("u", "u[0-9]*", "u[._ ]*", "in", "in[0-9]*", "in[._ ]*", "input*", "f", "f[0-9]*", "f[xyz]", "m[xyz]", "force*", "load*", "hammer*"),
     *("drive*", "exc*", "command*", "cmd*", "actuator*", "volt*", "ref", "ref[0-9]*", "reference*", "shaker*", "b[0-9]", "b[0-9][0-9]"),
 )
-"""Names of channels that are taken for inputs where neither the user nor the file says anything; upper and lower case alike."""
+"""Default names of input channels, used if neither the user nor the file specifies roles; case-insensitive."""
 
 OUTPUT_NAMES = (
     *("y", "y[0-9]*", "y[._ ]*", "out", "out[0-9]*", "out[._ ]*", "output*", "x", "x[0-9]*", "z", "z[0-9]*", "s", "s[0-9]*", "gauge*"),
     *("sensor*", "resp*", "acc*", "a[0-9]*", "vel*", "disp*", "gap*", "mic*", "platform.*"),
 )
-"""Names of channels that are taken for outputs where neither the user nor the file says anything; upper and lower case alike."""
+"""Default names of output channels, used if neither the user nor the file specifies roles; case-insensitive."""
 
 
 class Kind(Enum):
-    """What is wanted of a file that holds both."""
+    """Requested kind of data from a file with both."""
 
     RECORD = "record"
     RESPONSES = "responses"
 
 
 class FaultTolerance(Enum):
-    """Accepted fault of a record, and how its data are used: no fault is accepted unless the user names it."""
+    """Accepted fault of a record, and the resulting use of its data: by default no fault is accepted."""
 
     TRUNCATED = "truncated"
-    """Use what a file that breaks off still holds."""
+    """Use the available part of a truncated file."""
     GAPS = "gaps"
-    """Use the longest stretch without gaps and without numbers that are none."""
+    """Use the longest interval without gaps and with finite numbers."""
     DEAD = "dead"
-    """Leave out channels that are dead, constant or stand still."""
+    """Omit channels that are dead, constant or frozen."""
     CLIPPED = "clipped"
-    """Use clipped and coarsely quantised channels as they are; cut a stored coherence off at 0 and 1."""
+    """Use clipped and coarsely quantised channels unchanged; limit a stored coherence to 0 to 1."""
     UNITS = "units"
-    """Use numbers whose unit is missing or unknown as they are."""
+    """Use numbers with a missing or unknown unit unchanged."""
     DEPENDENT = "dependent"
-    """Leave out inputs that the others explain."""
+    """Omit inputs explained by the others."""
     SHORT = "short"
-    """Use a record that is short for the resolution asked for."""
+    """Use a record that is short for the requested resolution."""
     SLOW = "slow"
     """Use a record sampled too slowly for the highest mode, up to half its rate."""
     NAMES = "names"
-    """Leave out channels that are neither inputs nor outputs, or that the stage does not have."""
+    """Omit channels without a role, or absent from the stage."""
     WINDOWED = "windowed"
-    """Use a hammer's force that was set to nought after the blow as it is: a free decay from a blow."""
+    """Use a hammer force with zeros after the impact unchanged: a free decay after an impact."""
     INCOMPLETE = "incomplete"
-    """Leave out outputs whose responses to some inputs are missing, and coherence where the last response lacks its."""
+    """Omit outputs with missing responses, and coherence if the last response lacks it."""
 
 
 @dataclass(frozen=True)
 class Arrays(CheckedFields):
-    """Which arrays of a MAT or HDF5 file, or which columns of a CSV file, are what: names or patterns.
+    """Assignment of arrays of a MAT or HDF5 file, or of columns of a CSV file: names or patterns.
 
-    A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of texts, one a channel. Responses have
-    `frequencies` [Hz], complex `responses`, and `coherence`. What is not stated has the name that files written here give it. Of a CSV file
-    `time` and `frequencies` count: the others are its channels.
+    A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of texts, one per channel. Responses
+    have `frequencies` [Hz], complex `responses`, and `coherence`. Defaults are the names in files written here. For a CSV file only `time`
+    and `frequencies` apply: the other columns are channels.
     """
 
     samples: tuple[str, ...] = ("samples",)
@@ -80,7 +80,7 @@ class Arrays(CheckedFields):
     coherence: tuple[str, ...] = ("coherence",)
 
     def stated(self) -> tuple[tuple[str, str], ...]:
-        """Pairs of a meaning and a name that is not the usual one.
+        """Pairs of a meaning and a name different from the default.
 
         >>> Arrays(samples=("u", "y"), time=("t",)).stated()
         (('samples', 'u'), ('samples', 'y'), ('time', 't'))
@@ -91,11 +91,11 @@ class Arrays(CheckedFields):
 
 @dataclass(frozen=True)
 class Options(CheckedFields):
-    """What a user says about a file.
+    """User options for a file.
 
-    `inputs` and `outputs` are names or patterns (`u*`, `S?`); where only one of them is given, all other channels are of the other kind.
-    `only` names the channels that count at all. `rate` in Hz overrides what the file says of time. `units` are pairs of a name or pattern
-    and a unit. `arrays` says which arrays of the file are what. `allow` is what may be used although it is bad.
+    `inputs` and `outputs` are names or patterns (`u*`, `S?`); if only one is specified, all other channels have the other role. `only`
+    selects the channels used. `rate` in Hz overrides the file's times. `units` are pairs of a name or pattern and a unit. `arrays` assigns
+    the file's arrays. `allow` are the accepted faults.
     """
 
     inputs: tuple[str, ...] = ()
@@ -109,9 +109,9 @@ class Options(CheckedFields):
 
 
 def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:
-    """The channels with roles and units as the user says, else as the file says, else by their names.
+    """Assign roles and units to channels: from the user, else from the file, else by names.
 
-    Raises `DesignError` for patterns that match no channel and for channels that are said to be both.
+    Raises `DesignError` for patterns that match no channel and for channels with both roles.
 
     >>> [channel.role.value for channel in assign([Channel("u1", "V"), Channel("S1", "um"), Channel("note")], Options(), "a.csv")]
     ['input', 'output', 'unknown']
@@ -125,7 +125,7 @@ def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[C
 
 
 def select_names(names: Iterable[str], options: Options) -> tuple[str, ...]:
-    """The names that count: all, or those that `only` matches.
+    """Select the channel names: all, or those that match `only`.
 
     >>> select_names(["u1", "S1", "trigger"], Options(only=("u*", "S*")))
     ('u1', 'S1')
@@ -134,7 +134,7 @@ def select_names(names: Iterable[str], options: Options) -> tuple[str, ...]:
 
 
 def matches(name: str, patterns: Iterable[str]) -> bool:
-    """Whether a name is one of the patterns or fits one; upper and lower case differ.
+    """Check whether a name equals one of the patterns or matches it; case-sensitive.
 
     >>> matches("S1", ["S?"]), matches("S1", ["s1"]), matches("a[1]", ["a[1]"])
     (True, False, True)
@@ -143,7 +143,7 @@ def matches(name: str, patterns: Iterable[str]) -> bool:
 
 
 def number_names(names: Iterable[str]) -> tuple[str, ...]:
-    """Names made different by numbers where some are alike.
+    """Number equal names to make them unique.
 
     >>> number_names(["acc", "acc", "u"])
     ('acc 1', 'acc 2', 'u')

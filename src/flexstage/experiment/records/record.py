@@ -1,7 +1,7 @@
-"""Records: sampled channels of a test, and the frequency responses an analyser made of one.
+"""Records: sampled channels of a test, and frequency responses of an analyser.
 
-A record's samples are read in blocks from wherever they lie, so that a file larger than memory is a record like any other. Numbers stay in
-the units their channels state, bit by bit as the file has them.
+Samples are read in blocks from any source, so that a record may exceed the memory. Numbers stay in the channels' units, bit-identical to
+the file.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import FREQUENCY, TIME
 
 RATES = (1e-12, 1e15)
-"""Sampling rates there can be [Hz]."""
+"""Valid sampling rates [Hz]."""
 
 
 class Role(Enum):
-    """What a channel was in the test."""
+    """Role of a channel in the test."""
 
     INPUT = "input"
     OUTPUT = "output"
@@ -36,7 +36,7 @@ class Role(Enum):
 
 @dataclass(frozen=True)
 class Channel(CheckedFields):
-    """A recorded channel: its name, the unit of its numbers (empty: not stated) and what it was in the test."""
+    """Recorded channel: its name, unit (empty: not specified), and role in the test."""
 
     name: str
     unit: str = ""
@@ -44,7 +44,7 @@ class Channel(CheckedFields):
 
 
 class Samples(Protocol):
-    """Samples wherever they lie: `length` samples of every channel, read in any range."""
+    """Samples from any source: `length` samples of every channel, read in any range."""
 
     @property
     def length(self) -> int:
@@ -52,13 +52,13 @@ class Samples(Protocol):
         ...
 
     def read(self, start: int, stop: int, /) -> Array:
-        """Samples `start` to `stop`, the latter excluded, as floats (n, channels)."""
+        """Read samples `start` to `stop` (excluded), as floats (n, channels)."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class InMemory:
-    """Samples held as one array (n, channels)."""
+    """Samples in one array (n, channels)."""
 
     values: Array
 
@@ -68,7 +68,7 @@ class InMemory:
         return len(self.values)
 
     def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded.
+        """Samples `start` to `stop` (excluded).
 
         >>> InMemory(np.array([[1.0], [2.0], [3.0]])).read(1, 3).tolist()
         [[2.0], [3.0]]
@@ -78,14 +78,14 @@ class InMemory:
 
 @dataclass(frozen=True, eq=False)
 class ComputedSamples:
-    """Samples that a function reads: `read(start, stop)` returns those of a block, the latter excluded, as floats (n, channels)."""
+    """Samples read by a function: `read(start, stop)` returns those of a block (stop excluded), as floats (n, channels)."""
 
     length: int
     read: Callable[[int, int], Array]
 
 
 def changed_samples(samples: Samples, change: Callable[[Array], Array]) -> Samples:
-    """Other samples with each block changed as it is read.
+    """Apply a change to each block of samples when it is read.
 
     >>> changed_samples(InMemory(np.array([[1.0, 2.0]])), lambda block: block[:, [1]]).read(0, 1).tolist()
     [[2.0]]
@@ -97,9 +97,9 @@ def changed_samples(samples: Samples, change: Callable[[Array], Array]) -> Sampl
 class Record(InNotebook, CheckedFields):
     """Channels sampled together at a constant rate.
 
-    `rate` in Hz; `start` is the time of the first sample in s; `samples` hold (n, channels) numbers in the channels' own units; `name` and
-    `source` say what was recorded and where it was read from. Raises `DesignError` for a rate that is none, for no or unnamed channels and
-    for names that occur twice.
+    `rate` in Hz; `start` is the time of the first sample in s. `samples` are (n, channels) numbers in the channels' own units. `name` and
+    `source` identify the record and its file. Raises `DesignError` for an invalid rate, for missing or unnamed channels and for duplicate
+    names.
 
     >>> both = (Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT))
     >>> shaken = Record(both, 2048.0, InMemory(np.zeros((4096, 2))))
@@ -121,12 +121,12 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """What messages call it: the file, else the name."""
+        """Location in messages: the file, else the name."""
         return self.source or self.name or "record"
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """`record`, beside `responses`."""
+        """`record`, in contrast to `responses`."""
         return "record"
 
     @property
@@ -146,12 +146,12 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def inputs(self) -> Annotated[tuple[Channel, ...], VIEW]:
-        """Channels that were inputs."""
+        """Channels with the role input."""
         return tuple(channel for channel in self.channels if channel.role is Role.INPUT)
 
     @property
     def outputs(self) -> Annotated[tuple[Channel, ...], VIEW]:
-        """Channels that were outputs."""
+        """Channels with the role output."""
         return tuple(channel for channel in self.channels if channel.role is Role.OUTPUT)
 
     @property
@@ -160,7 +160,7 @@ class Record(InNotebook, CheckedFields):
         return self.samples.read(0, self.length)
 
     def columns(self, names: Iterable[str]) -> tuple[int, ...]:
-        """Numbers of the named channels; raises `DesignError` for every name that is none's."""
+        """Values of the named channels; raises `DesignError` for every unknown name."""
         chosen, known = tuple(names), self.names
         where = self.where
         require(
@@ -170,7 +170,7 @@ class Record(InNotebook, CheckedFields):
         return tuple(known.index(name) for name in chosen)
 
     def select(self, names: Iterable[str]) -> Record:
-        """The record of the named channels alone, in the order named.
+        """Return the record of the named channels, in this order.
 
         >>> both = Record((Channel("a"), Channel("b")), 1.0, InMemory(np.array([[1.0, 2.0]])))
         >>> both.select(["b"]).values.tolist()
@@ -184,7 +184,7 @@ class Record(InNotebook, CheckedFields):
         )
 
     def part(self, start: int, stop: int) -> Record:
-        """The record from sample `start` to sample `stop`, the latter excluded.
+        """Return the record from sample `start` to sample `stop` (excluded).
 
         >>> long = Record((Channel("a"),), 2.0, InMemory(np.array([[1.0], [2.0], [3.0]])))
         >>> long.part(1, 3).start, long.part(1, 3).values.tolist()
@@ -196,7 +196,7 @@ class Record(InNotebook, CheckedFields):
         return replace(self, start=self.start + start / self.rate, samples=samples)
 
     def blocks(self, size: int, overlap: int = 0) -> Iterator[Array]:
-        """The samples in blocks (size, channels), each beginning with the last `overlap` samples of the one before; the last may be short.
+        """Iterate over blocks (size, channels), each starting with the last `overlap` samples of the previous one; the last may be short.
 
         >>> five = Record((Channel("a"),), 1.0, InMemory(np.arange(5.0)[:, None]))
         >>> [block[:, 0].tolist() for block in five.blocks(3, overlap=1)]
@@ -210,11 +210,11 @@ class Record(InNotebook, CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Responses(InNotebook, CheckedFields):
-    """Frequency responses as an analyser stored them: H_ij = output i over input j, for e^{+j omega t}.
+    """Frequency responses of an analyser: H_ij = output i over input j, for e^{+j omega t}.
 
-    `frequencies` (f,) in Hz, rising; `values` (f, outputs, inputs), complex, in output unit over input unit; `coherence` of the same
-    shape where it was stored with them; `window` and `averages` where the file states them. Raises `DesignError` for names that occur twice
-    on one side and for shapes that do not fit.
+    `frequencies` (f,) in Hz, ascending; `values` (f, outputs, inputs), complex, in output unit over input unit. `coherence` has the same
+    shape, if stored; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names on one side and
+    for shapes that do not match.
 
     >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))
     >>> one.at("S1", "u1").tolist(), one.units
@@ -236,9 +236,9 @@ class Responses(InNotebook, CheckedFields):
         where = self.where
         expected = (len(self.frequencies), len(self.outputs), len(self.inputs))
         shapes = {"values": self.values.shape} | ({} if self.coherence is None else {"coherence": self.coherence.shape})
-        advice = "Give one value a frequency, output and input"
+        advice = "Use one value per frequency, output and input"
         wrong = [
-            Finding(f"{where}: {name}", f"shape {shape} where {expected} is expected", advice)
+            Finding(f"{where}: {name}", f"wrong shape (got {shape}, expected {expected})", advice)
             for name, shape in shapes.items()
             if shape != expected
         ]
@@ -246,12 +246,12 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """What messages call it: the file, else the name."""
+        """Location in messages: the file, else the name."""
         return self.source or self.name or "responses"
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """`responses`, beside `record`."""
+        """`responses`, in contrast to `record`."""
         return "responses"
 
     @property
@@ -261,19 +261,19 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def band(self) -> Annotated[tuple[float, float], FREQUENCY]:
-        """The lowest and the highest frequency."""
+        """Lowest and highest frequency."""
         return float(self.frequencies[0]), float(self.frequencies[-1])
 
     @property
     def units(self) -> tuple[tuple[str, ...], ...]:
-        """Unit of every entry, outputs x inputs; empty where one side's is not stated."""
+        """Unit of every entry, outputs x inputs; empty if one of both is missing."""
         columns = [channel.unit for channel in self.inputs]
         ratios = ratio_units(tuple(channel.unit for channel in self.outputs), tuple(columns))
         stated = ((row, [channel.unit and unit for unit in columns]) for row, channel in zip(ratios, self.outputs, strict=True))
         return tuple(tuple(ratio if known else "" for ratio, known in zip(row, both, strict=True)) for row, both in stated)
 
     def select(self, rows: Sequence[int], columns: Sequence[int]) -> Responses:
-        """The responses of the outputs and to the inputs of these numbers alone."""
+        """Return the responses between the outputs and inputs of these indices."""
         chosen = np.ix_(range(len(self.frequencies)), rows, columns)
         return replace(
             self,
@@ -284,14 +284,14 @@ class Responses(InNotebook, CheckedFields):
         )
 
     def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
-        """One entry over frequency, complex (f,)."""
+        """Single entry over frequency, complex (f,)."""
         row = [channel.name for channel in self.outputs].index(output)
         column = [channel.name for channel in self.inputs].index(input)
         return self.values[:, row, column]
 
 
 def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
-    """The record, telling how many samples were read whenever a block is: for bars of progress.
+    """Wrap a record to report the number of samples read with each block, for progress bars.
 
     >>> told = []
     >>> long = report_reading(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)
@@ -309,7 +309,7 @@ def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
 
 @check_arguments
 def in_memory(channels: Iterable[Channel], rate: float, values: Annotated[Array, GAPS]) -> Record:
-    """The record of an array (n, channels), sampled at `rate` in Hz.
+    """Create the record of an array (n, channels), sampled at `rate` in Hz.
 
     >>> in_memory([Channel("S1", "um")], 10.0, np.zeros((5, 1))).duration
     0.5
@@ -318,7 +318,7 @@ def in_memory(channels: Iterable[Channel], rate: float, values: Annotated[Array,
 
 
 def rising_problem(frequencies: Array) -> str | None:
-    """What keeps frequencies from rising: fewer than two, one that stands twice, one below the one before; None if they rise.
+    """Describe why frequencies do not increase: fewer than two, a duplicate, or a decrease; None if they increase.
 
     >>> rising_problem(np.array([1.0, 2.0, 2.0, 3.0]))
     'its frequencies do not rise: 2 Hz stands twice, lines 2 and 3'
@@ -335,7 +335,7 @@ def rising_problem(frequencies: Array) -> str | None:
 
 
 def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
-    """What is wrong with the names of channels: none at all, empty ones, ones that occur twice.
+    """Findings for channel names: no channels, empty names, duplicates.
 
     >>> [finding.what for finding in name_findings("a.csv", (Channel("S1"), Channel("S1")))]
     ['2 channels have this name']
@@ -345,7 +345,7 @@ def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
     counts = Counter(channel.name for channel in channels)
     unnamed = [Finding(where, f"{counts['']} of {len(channels)} channels have no name", "Name every channel")] if counts[""] else []
     twice = [name for name, count in counts.items() if count > 1 and name]
-    return unnamed + [Finding(f"{where}: {name}", f"{counts[name]} channels have this name", "Name each channel once") for name in twice]
+    return unnamed + [Finding(f"{where}: {name}", f"{counts[name]} channels have this name", "Rename all but one") for name in twice]
 
 
 def _rate_findings(where: str, rate: float) -> list[Finding]:

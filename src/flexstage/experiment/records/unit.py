@@ -1,4 +1,4 @@
-"""Units of recorded channels: spellings of other programs, what keeps a unit from being read, and records in SI."""
+"""Units of recorded channels: spellings of other programs, unusable units, and records in SI."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FURTHER = ("m/s", "rad/s", "rad/s^2", "A", "C", "W", "J", "N/s", "V/s")
 
 
 def plain_unit(text: str) -> str:
-    """A unit in this package's spelling: words become symbols, `m/s2` a power, brackets go; a lone `g` is the standard gravity.
+    """Convert a unit to this package's spelling: symbols for words, `m/s2` as a power, no brackets; a single `g` is standard gravity.
 
     >>> [plain_unit(text) for text in ("Volts", "m/s2", "[um]", "NONE", "g", "g0", "m/sec^2")]
     ['V', 'm/s^2', 'um', '', 'g0', 'g0', 'm/s^2']
@@ -40,7 +40,7 @@ def plain_unit(text: str) -> str:
 
 
 def unit_problem(unit: str) -> str | None:
-    """Why a unit cannot be used; None if it can.
+    """Describe why a unit is unusable; None if it is usable.
 
     >>> unit_problem("um"), unit_problem(""), unit_problem("furlong")
     (None, 'no unit is stated', '"furlong" is not a known unit')
@@ -55,7 +55,7 @@ def unit_problem(unit: str) -> str | None:
 
 
 def same_dimension(unit: str, other: str) -> bool:
-    """Whether two units, both readable, measure the same.
+    """Check whether two readable units have the same dimension.
 
     >>> same_dimension("um", "m"), same_dimension("um", "V")
     (True, False)
@@ -64,7 +64,7 @@ def same_dimension(unit: str, other: str) -> bool:
 
 
 def in_si(record: Record) -> Record:
-    """The record with numbers and units in SI, scaled as they are read; a channel whose unit is absent or unknown stays as it is.
+    """Convert a record to SI, scaled when read; channels with a missing or unknown unit are unchanged.
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> metres = in_si(in_memory([Channel("S1", "um"), Channel("u1")], 1.0, np.array([[2.0, 3.0]])))
@@ -78,7 +78,7 @@ def in_si(record: Record) -> Record:
 
 
 def _si(unit: str) -> tuple[str, float]:
-    """The coherent SI unit and the factor that leads to it."""
+    """Coherent SI unit, and the factor to it."""
     if unit_problem(unit) is not None:
         return unit, 1.0
     dimension = dimension_of(unit)

@@ -1,4 +1,4 @@
-"""Theory, FEA and experiment in one picture (the paper's Fig. 12)."""
+"""Comparison figure of model, finite elements and test (the paper's Fig. 12)."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _THEORY, _FEA, _EXPERIMENT = SERIES[0], SERIES[2], SERIES[1]
 
 
 def compare_figure(found: Compared) -> Any:
-    """Frequencies of the platform's modes by theory, FEA and experiment as bars, and below how far the former are off, as a Figure.
+    """Plot frequencies of the platform's modes by model, finite elements and test as bars, with differences below, as a Figure.
 
-    Whiskers are the experiment's 95 % intervals, in the lower panel as bands about zero.
+    Whiskers are the test's 95 % intervals, shown in the lower panel as bands about zero.
     """
     series: list[_Series] = [("theory", _THEORY, [row.theory for row in found.modes])]
     if found.fea is not None:
@@ -53,7 +53,7 @@ def _bars(axes: Any, series: list[_Series], rows: tuple[ComparedMode, ...]) -> N
 
 
 def _differences(axes: Any, found: Compared) -> None:
-    """Points at the differences, bands at the experiment's interval, repeated modes joined below."""
+    """Draw the differences as points, the test's intervals as bands, repeated modes connected below."""
     axes.axhline(0.0, color=MUTED, linewidth=0.6)
     seen = [index for index, row in enumerate(found.modes) if row.experiment is not None]
     width = [100.0 * (found.modes[index].uncertainty or 0.0) for index in seen]

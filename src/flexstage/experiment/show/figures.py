@@ -1,4 +1,4 @@
-"""What a test says, drawn: responses with the fit over the data, coherence, the stabilisation diagram."""
+"""Figures of a test: responses with fit and data, coherence, the stabilisation diagram."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.show.display import to_typography
 from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
 LARGEST = 6
-"""Rows and columns of responses that a figure shows at most."""
+"""Maximum rows and columns of responses in a figure."""
 
 _BINS, _FINE = 110, 90
 _POINTS = 3500
@@ -25,7 +25,7 @@ _MANY = 4000
 
 
 def response_matrix_figure(found: Identified) -> Any:
-    """Every response of the first outputs to the first inputs: magnitude over phase, data grey and fit coloured, as a matplotlib Figure.
+    """Plot the response matrix of the first outputs and inputs: magnitude over phase, data grey and fit coloured, as a matplotlib Figure.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -57,7 +57,7 @@ def response_matrix_figure(found: Identified) -> Any:
 
 
 def density_figure(found: Identified) -> Any:
-    """Amplitude densities of outputs where no input was recorded, and the modes found, as a matplotlib Figure."""
+    """Plot amplitude densities of outputs without recorded inputs, with the identified modes, as a matplotlib Figure."""
     lines = found.responses.frequencies
     inside = _inside(lines, focus(found))
     with style_context():
@@ -76,7 +76,7 @@ def density_figure(found: Identified) -> Any:
 
 
 def focus(found: Identified) -> tuple[float, float]:
-    """The frequencies that figures show [Hz]: from below the lowest mode to well above the highest one, within the band looked at.
+    """Choose the frequency range of figures [Hz]: from below the lowest mode to well above the highest one, within the searched band.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -90,11 +90,11 @@ def focus(found: Identified) -> tuple[float, float]:
 
 
 def _response(pair: Any, data: tuple[Array, Array], fit: tuple[Array, Array | None], bins: int) -> None:
-    """Magnitude and phase, each on an axis of its own; `fit` may have no values."""
+    """Draw magnitude and phase on two axes; `fit` may be empty."""
     (upper, lower), (lines, values), (fine, fitted) = pair, data, fit
     upper.semilogy(*_extremes(lines, np.abs(values), bins), color=_DATA, linewidth=1.6)
     step = max(1, len(lines) // bins)
-    marks = np.rad2deg(np.angle(values[::step]))[:, None] + np.array([-4.0, 4.0, np.nan])  # one path: markers are an element each
+    marks = np.rad2deg(np.angle(values[::step]))[:, None] + np.array([-4.0, 4.0, np.nan])  # one path: each marker is an element
     lower.plot(np.repeat(lines[::step], 3), marks.ravel(), color=_DATA, linewidth=1.5)
     if fitted is not None:
         angle = np.rad2deg(np.angle(fitted))
@@ -106,7 +106,7 @@ def _response(pair: Any, data: tuple[Array, Array], fit: tuple[Array, Array | No
 
 
 def _same_scale(row: Any, sizes: Array) -> None:
-    """One scale of magnitudes for all responses of an output, without what is far below the least of them."""
+    """Set a common magnitude scale for all responses of an output, without very low values."""
     if np.any(sizes > 0.0):
         high = float(np.max(sizes))
         low = max(float(np.quantile(sizes[sizes > 0.0], 0.005)), 1e-6 * high)
@@ -133,7 +133,7 @@ def _matrix_labels(grid: Any, rows: Sequence[Channel], columns: Sequence[Channel
 
 
 def _decades(axes: Any) -> None:
-    """Ticks of a logarithmic axis at few powers of ten, as plain numbers."""
+    """Set a few ticks at powers of ten on a logarithmic axis, as plain numbers."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     axes.yaxis.set_major_locator(LogLocator(numticks=5))
@@ -142,7 +142,7 @@ def _decades(axes: Any) -> None:
 
 
 def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[float, float]) -> Any:
-    """H1, H2 and the paper's T_ij = G_ij/G_ii of each output from the input that moves it most, as a matplotlib Figure.
+    """Plot H1, H2 and the paper's T_ij = G_ij/G_ii of each output for its dominant input, as a matplotlib Figure.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> from flexstage.experiment.spectral.transfer import h1, h2
@@ -154,7 +154,7 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
 
     def draw(axes: Any, row: int) -> None:
         for index, each in enumerate((first, *others)):
-            own = _inside(each.frequencies, band)  # estimates may stand on other lines than the first
+            own = _inside(each.frequencies, band)  # estimates may have other lines than the first
             x, size = _extremes(each.frequencies[own], np.abs(each.values[own, row, largest[row]]))
             axes.semilogy(x, size, color=SERIES[index], linewidth=1.6 - 0.5 * index, label=each.name)
         _decades(axes)
@@ -164,10 +164,9 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
 
 
 def coherence_figure(found: Identified, multiple: Array | None, lines: Array | None = None) -> Any:
-    """For each of the first outputs the multiple coherence, and the ordinary one with every input, as a matplotlib Figure.
+    """Plot the multiple coherence of the first outputs, and the ordinary coherence with every input, as a matplotlib Figure.
 
-    `multiple` (f, p) is absent where only an analyser's ordinary coherence is known; it stands on `lines` [Hz], by default those of the
-    responses found.
+    `multiple` (f, p) is absent for an analyser's ordinary coherence; its `lines` [Hz] are by default those of the identified responses.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -190,7 +189,7 @@ def coherence_figure(found: Identified, multiple: Array | None, lines: Array | N
 
 
 def _by_output(titles: Sequence[str], band: tuple[float, float], draw: Callable[[Any, int], None], height: float) -> Any:
-    """A figure with a panel of a height [in] for each of the first outputs, three in a row, and one legend above all."""
+    """Figure with a panel of a height [in] for each of the first outputs, three per row, and one legend above all."""
     count = min(LARGEST, len(titles))
     across = min(3, count)
     down = -(-count // across)
@@ -217,7 +216,7 @@ def _mark_modes(axes: Any, found: Identified, label: str | None = None) -> None:
 
 
 def stabilisation_figure(found: Identified) -> Any:
-    """The stabilisation diagram: poles by order and frequency, how stable each is, the modes found, the size of all responses behind.
+    """Plot the stabilisation diagram: poles by order and frequency, their stability, identified modes, and the sum of all responses.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -248,7 +247,7 @@ def _poles(found: Identified, stable: int) -> Array:
 
 
 def _envelope(axes: Any, found: Identified) -> None:
-    """The root sum of squares of all responses, each output over its own mean, on an axis of its own."""
+    """Draw the root sum of squares of all responses, each output over its own mean, on a separate axis."""
     data = found.responses
     inside = _inside(data.frequencies, focus(found))
     power = np.sum(np.abs(data.values[inside]) ** 2, axis=2)
@@ -267,7 +266,7 @@ def _inside(frequencies: Array, band: tuple[float, float]) -> Array:
 
 
 def _fine_lines(found: Identified, band: tuple[float, float]) -> Array:
-    """Frequencies for the fit: evenly over the band, and finely within some half-widths of each mode."""
+    """Frequencies of the fit: evenly over the band, and finely within some half-widths of each mode."""
     low, high = band
     offsets = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])
     around = (found.frequencies[:, None] * (1.0 + offsets * found.damping[:, None])).ravel()
@@ -276,7 +275,7 @@ def _fine_lines(found: Identified, band: tuple[float, float]) -> Array:
 
 
 def _extremes(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
-    """A curve with so few points as a picture can show: of each bin its least and its largest value."""
+    """Curve reduced to the pixels of a picture: the minimum and the maximum of each bin."""
     if len(x) <= 3 * bins:
         return x, y
     kept: list[int] = []
@@ -286,6 +285,6 @@ def _extremes(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
 
 
 def _means(x: Array, y: Array, band: tuple[float, float]) -> tuple[Array, Array]:
-    """A curve within a band, averaged over bins."""
+    """Curve within a band, averaged over bins."""
     parts = np.array_split(np.flatnonzero(_inside(x, band)), min(np.sum(_inside(x, band)), 2 * _BINS))
     return np.array([np.mean(x[part]) for part in parts]), np.array([np.mean(y[part]) for part in parts])

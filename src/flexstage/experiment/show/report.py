@@ -1,4 +1,4 @@
-"""The reports of tests: modes found in records, and theory beside them; one HTML file each that stands alone."""
+"""Reports of tests: identified modes, and comparison with models; one self-contained HTML file each."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from flexstage.show.viewer.data import StageData, stage_data
 
 
 def identify_report(seen: Identification, mechanism: Mechanism | None = None, shapes: StageShapes | None = None) -> str:
-    """Modes found in a test as a page of HTML: tables, responses with the fit, coherence, stabilisation; with a stage, shapes on it.
+    """Write the modes of a test as an HTML page: tables, responses with fit, coherence, stabilisation; with a stage, its shapes.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.pipeline import identification
@@ -46,7 +46,7 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
 
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
-    """Theory, FEA and experiment as a page of HTML, followed by what the experiment rests on."""
+    """Write model, finite elements and test as an HTML page, followed by the test's data."""
     data = _with_measured(stage_data(mechanism, model=read(mechanism, found.model)), seen, shapes)
     head = [stage_section(data), compare_section(found), pair_section(found, data)]
     sections = [*head, *_sections(seen, _measured(seen, shapes, data))]
@@ -54,7 +54,7 @@ def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, 
 
 
 def _with_measured(data: StageData, seen: Identification, shapes: StageShapes | None) -> StageData:
-    """The stage's motions, and those measured."""
+    """Ideal and measured motions of the stage."""
     return data if shapes is None else replace(data, motions=(*data.motions, *measured_motions(seen.found, shapes, data.bones)))
 
 
@@ -63,14 +63,14 @@ def _measured(seen: Identification, shapes: StageShapes | None, data: StageData)
 
 
 def _found_headline(seen: Identification) -> Headline:
-    """How many modes were found, and between which frequencies."""
+    """Headline: number of identified modes, and their frequency range."""
     found = seen.found.frequencies
     ends = f", {number(float(found[0]), 4)} to {number(float(found[-1]), 4)} Hz" if len(found) else ""
     return Headline(f"{len(found)} {'mode' if len(found) == 1 else 'modes'} found{ends}.")
 
 
 def _compared_headline(found: Compared) -> Headline:
-    """How many of theory's modes the experiment shows, and how far off theory is at most."""
+    """Headline: number of platform modes in the test, and the largest frequency error of the model."""
     seen = [mode for mode in found.modes if mode.difference is not None]
     said = f"{len(seen)} of {len(found.modes)} modes of the platform are found in the experiment"
     if not seen:

@@ -1,4 +1,4 @@
-"""Sections of tests: what was measured, modes found, responses, coherence, stabilisation, shapes on the stage; theory beside them."""
+"""Report sections of tests: data, identified modes, responses, coherence, stabilisation, shapes on the stage, comparison with models."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ _FLOOR = (
 
 
 def found_section(seen: Identification) -> Section | None:
-    """The modes found, and what the data cannot tell."""
+    """Section of identified modes, and of the limits of the data."""
     text = (
         "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator on H1; each group of near "
-        "ones is fitted by maximum likelihood to the transform of the whole record. What the data do not ask for is left out."
+        "ones is fitted by maximum likelihood to the transform of the whole record. Insignificant modes are omitted."
     )
     found = seen.found
     text = text if found.inputs else _FLOOR
@@ -62,7 +62,7 @@ def found_section(seen: Identification) -> Section | None:
 
 
 def response_data_section(seen: Identification) -> Section | None:
-    """Responses with the fit over the data, estimators beside one another; densities where no input was recorded."""
+    """Section of responses with fit and data, and estimators side by side; densities without recorded inputs."""
     found = seen.found
     if not found.inputs:
         picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
@@ -74,9 +74,9 @@ def response_data_section(seen: Identification) -> Section | None:
     others = [each for each in (seen.second, seen.ratio) if each is not None]
     estimators: Block | None = None
     if others and seen.spectra is not None:
-        picture = to_svg(estimator_figure(found.responses, others, focus(found)), "estimators", "Estimates of responses beside one another")
+        picture = to_svg(estimator_figure(found.responses, others, focus(found)), "estimators", "Comparison of response estimates")
         text = (
-            "Each output with the input that moves it most. H1 for noise at outputs, H2 for noise at inputs; G_ij/G_ii (Eq. 29 of Shin & "
+            "Each output with its dominant input. H1 for noise at outputs, H2 for noise at inputs; G_ij/G_ii (Eq. 29 of Shin & "
             "Moon) equals H1 where one input acts alone or inputs are uncorrelated."
         )
         estimators = Picture(picture, text)
@@ -84,7 +84,7 @@ def response_data_section(seen: Identification) -> Section | None:
 
 
 def coherence_section(seen: Identification) -> Section | None:
-    """Ordinary and multiple coherence; `None` where an analyser stored none."""
+    """Section of ordinary and multiple coherence; `None` without stored coherence."""
     if seen.found.responses.coherence is None and seen.multiple is None:
         return None
     lines = None if seen.spectra is None else seen.spectra.frequencies
@@ -94,21 +94,21 @@ def coherence_section(seen: Identification) -> Section | None:
     if known is not None:
         window = known.segments.window.value.capitalize()
         cut = f" Segments of {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
-    caption = "Multiple: the share of an output's power that all inputs together explain. Ordinary, with one input: its share alone." + cut
+    caption = "Multiple: the share of an output's power explained by all inputs together. Ordinary: by one input." + cut
     return section("Coherence", [Picture(drawn, caption)])
 
 
 def stabilisation_section(found: Identified) -> Section | None:
-    """The stabilisation diagram; `None` where nothing was tried."""
+    """Section of the stabilisation diagram; `None` without candidates."""
     if not found.stabilisation:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
-    caption = "Poles of rising order; stable: within 0.2 % in frequency, 5 % in damping, 0.98 in participation of the order below."
+    caption = "Poles of increasing order; stable: within 0.2 % in frequency, 5 % in damping, 0.98 in participation of the order below."
     return section("Stabilisation", [Picture(drawn, caption)])
 
 
 def measured_shape_section(found: Identified, shapes: StageShapes, data: StageData) -> Section | None:
-    """The measured shapes drawn as motion of the stage, or why they cannot be; `None` where no mode was found."""
+    """Section of measured shapes as stage motions, or the reason for their absence; `None` without modes."""
     if not len(found.frequencies):
         return None
     if shapes.missing:
@@ -121,7 +121,7 @@ def measured_shape_section(found: Identified, shapes: StageShapes, data: StageDa
 
 
 def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) -> tuple[Motion, ...]:
-    """The measured shapes as motions of a viewer; none where they cannot be drawn on the stage."""
+    """Convert the measured shapes to motions of the viewer; empty if they have no stage motion."""
     return tuple(
         Motion(
             Group.MODE,
@@ -136,14 +136,14 @@ def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) ->
 
 
 def pair_section(found: Compared, data: StageData) -> Section | None:
-    """Theory's modes beside those measured, which play together; `None` where none has a partner that can be drawn."""
+    """Section of model and measured modes that play together; `None` without a pair that can be drawn."""
     theory, known = platform_modes(data), {each.name for each in data.motions}
     partners = [
         (f"mode {theory[mode.number - 1].name}", f"mode measured {mode.experiment.number}")
         for mode in found.modes
         if mode.experiment is not None and mode.number <= len(theory) and f"measured {mode.experiment.number}" in known
     ]
-    text = "Left theory, right the experiment: a chosen mode plays beside its partner. Signs are arbitrary; repeated modes mix."
+    text = "Left: theory; right: the experiment, with the paired mode. Signs are arbitrary; repeated modes mix."
     joined = joined_viewers(partners)
     return None if joined is None else section("Side by side", [joined, Prose(text)])
 
@@ -158,14 +158,14 @@ def _pictures(found: Identified, data: StageData) -> Iterator[Picture]:
 
 
 def compare_section(found: Compared) -> Section | None:
-    """Theory, FEA and experiment: picture, tables, warnings."""
+    """Section of model, finite elements and test: figure, tables, warnings."""
     drawn = to_svg(compare_figure(found), "compared", "Frequencies by theory, FEA and experiment")
     shown = "theory, FEA and experiment" if found.fea is not None else "theory and experiment"
-    caption = f"Frequencies by {shown}; below, how far off the experiment. Whiskers and bands: the experiment's 95 % intervals."
+    caption = f"Frequencies by {shown}; below, the difference from the experiment. Whiskers and bands: the experiment's 95 % intervals."
     return section("Theory and experiment", [Picture(drawn, caption), *compare_tables(found)])
 
 
 def compare_tables(found: Compared) -> tuple[Table | None, ...]:
-    """The tables of a comparison, in order."""
+    """List the tables of a comparison, in order."""
     modes = result_table(found.modes, notes=found.notes, provenance=found.provenance)
     return modes, result_table(found.repeated), result_table(found.further), data_warning_table(found.data_warnings)

@@ -1,4 +1,4 @@
-"""Tables of tests: what was recorded, the modes found in it, their shapes."""
+"""Tables of tests: records, identified modes, shapes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.show.table import Cell, Mark, Table, make_table, matrix_table, re
 
 
 def recorded_table(test: Sequence[Record] | Responses) -> Table:
-    """What was measured: every file with its channels, and how long and how fast it was sampled.
+    """Tabulate the recorded data: every file with its channels, duration and sampling rate.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> recorded_table((one_mode_record(),)).texts()[1]
@@ -37,14 +37,14 @@ def _source(what: Record | Responses) -> Cell:
 
 
 def _channels(channels: Sequence[Channel]) -> str:
-    """Names, and the unit where it is the same for all."""
+    """Names, and the unit if common to all."""
     units = {channel.unit for channel in channels}
     names = ", ".join(channel.name if len(units) == 1 or not channel.unit else f"{channel.name} [{channel.unit}]" for channel in channels)
     return f"{names} [{units.pop()}]" if len(units) == 1 and "" not in units else names
 
 
 def identified_table(found: Identified) -> Table:
-    """Frequencies and damping ratios with their 95 % intervals, and which modes are so close that only their subspace is known.
+    """Tabulate frequencies and damping ratios with 95 % intervals, and close modes, for which only the subspace is known.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -56,7 +56,7 @@ def identified_table(found: Identified) -> Table:
 
 
 def measured_shape_table(found: Identified) -> Table:
-    """The shapes, each turned to be as real as it can be, over their largest component.
+    """Tabulate the shapes, each rotated to be as real as possible, with largest component 1.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -70,7 +70,7 @@ def measured_shape_table(found: Identified) -> Table:
 
 
 def data_warning_table(warnings: Sequence[str]) -> Table | None:
-    """What the data cannot tell; `None` where there is nothing of the kind.
+    """Tabulate the limits of the data; `None` without any.
 
     >>> data_warning_table([]) is None
     True
@@ -81,11 +81,11 @@ def data_warning_table(warnings: Sequence[str]) -> Table | None:
 
 
 def motion_explained_text(explained: Array) -> str:
-    """How much of the measured shapes is motion of the ideal stage.
+    """Describe the share of the measured shapes explained by ideal stage motion.
 
     >>> motion_explained_text(np.array([0.999, 1.0]))
     'The motion drawn explains 99.9 % or more of every measured shape.'
     """
     if float(np.min(explained)) > 1.0 - 1e-9:
-        return "As many outputs as freedoms: nothing could contradict the motion drawn."
-    return f"The motion drawn explains {percent(np.floor(1e3 * float(np.min(explained))) / 1e3)} or more of every measured shape."
+        return "As many outputs as degrees of freedom: the drawn motion has no independent check."
+    return f"The drawn motion explains {percent(np.floor(1e3 * float(np.min(explained))) / 1e3)} or more of every measured shape."

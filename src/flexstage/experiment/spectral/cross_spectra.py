@@ -21,7 +21,7 @@ BATCH = 2_000_000
 
 
 class Window(Enum):
-    """How a segment is faded in and out before it is transformed."""
+    """Window of a segment before its transform."""
 
     HANN = "hann"
     HAMMING = "hamming"
@@ -29,7 +29,7 @@ class Window(Enum):
     BOXCAR = "boxcar"
 
     def samples(self, size: int) -> Array:
-        """The window over a segment of `size` samples, in its periodic form (Harris 1978).
+        """Evaluate the window over a segment of `size` samples, in its periodic form (Harris 1978).
 
         >>> Window.HANN.samples(4).round(12).tolist()
         [0.0, 0.5, 1.0, 0.5]
@@ -41,7 +41,7 @@ class Window(Enum):
 
 @dataclass(frozen=True)
 class Segments(CheckedFields):
-    """How a record is cut up: `seconds` of each segment (its inverse is the resolution in Hz), `overlap` as a share, and window."""
+    """Segmentation of a record: `seconds` of each segment (its inverse is the resolution in Hz), relative `overlap`, and window."""
 
     seconds: Annotated[float, INNER]
     overlap: float = 0.5
@@ -52,9 +52,9 @@ class Segments(CheckedFields):
 class Spectra:
     """One-sided spectral densities at `frequencies` (f,) in Hz: `xx` (f, m, m), `yx` (f, p, m) and `yy` (f, p, p).
 
-    yx = E[Y X^H] and so on: entry (i, j) is row i times the conjugate of column j; the paper's G_ij = E[X_i* Y_j] (Eq. 29) is yx[j, i].
-    An entry's unit is the product of its channels' units, per Hz. `averages` segments were averaged, worth `independent` ones that do not
-    overlap.
+    yx = E[Y X^H] and so on: entry (i, j) is row i times the conjugate of column j; the paper's G_ij = E[X_i* Y_j] (Eq. 29) is yx[j, i]. An
+    entry's unit is the product of its channels' units, per Hz. `averages` is the number of segments, equivalent to `independent` ones
+    without overlap.
     """
 
     frequencies: Array
@@ -69,29 +69,29 @@ class Spectra:
 
     @property
     def resolution(self) -> Annotated[float, FREQUENCY]:
-        """How far the lines lie apart."""
+        """Spacing of the lines."""
         return float(self.frequencies[1])
 
     def driven(self, names: Container[str]) -> Spectra:
-        """Without inputs that are not named or were at rest all the time."""
+        """Spectra without unnamed and inactive inputs."""
         power = np.sum(np.real(np.diagonal(self.xx, axis1=1, axis2=2)), axis=0)
         kept = np.array([index for index, each in enumerate(self.inputs) if each.name in names and power[index] > 0.0], dtype=int)
         inputs = tuple(self.inputs[index] for index in kept)
         return replace(self, inputs=inputs, xx=self.xx[:, kept[:, None], kept], yx=self.yx[:, :, kept])
 
     def band(self, low: float, high: float) -> Spectra:
-        """The lines from `low` to `high` in Hz, both included."""
+        """Lines from `low` to `high` in Hz, both included."""
         kept = (self.frequencies >= low) & (self.frequencies <= high)
         return replace(self, **{name: getattr(self, name)[kept] for name in ("frequencies", "xx", "yx", "yy")})
 
 
 @check_arguments
 def spectra(record: Record, segments: Segments) -> Spectra:
-    """Spectra of a record's inputs and outputs: Welch's average of windowed, overlapping segments, each freed of its mean.
+    """Estimate the spectra of a record's inputs and outputs by Welch's method: averages of windowed, overlapping segments without mean.
 
-    Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. Memory does not grow with the record's length. Raises `DesignError` for a record
-    without outputs, or shorter than a segment. The estimate is smeared by the window over about two lines: choose segments so long that
-    the sharpest resonance is several lines wide.
+    Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. Memory is independent of the record's length. Raises `DesignError` for a record
+    without outputs, or shorter than a segment. The window smears the estimate over about two lines: choose segments for several lines
+    within the sharpest resonance.
 
     >>> from flexstage.experiment.records.record import Role, in_memory
     >>> noise = np.random.default_rng(0).standard_normal((64_000, 1))
@@ -123,7 +123,7 @@ def spectra(record: Record, segments: Segments) -> Spectra:
 
 
 def example_spectra() -> Spectra:
-    """Spectra of a small record whose one output is three times its input, for examples.
+    """Return spectra of a small record with one output, three times its input, for examples.
 
     >>> example_spectra().averages
     7
@@ -136,7 +136,7 @@ def example_spectra() -> Spectra:
 
 
 def independent_averages(averages: int, window: Array, hop: int) -> float:
-    """How many segments without overlap would scatter as little as `averages` windowed ones every `hop` samples (Welch 1967, Eq. 11).
+    """Compute the equivalent number of non-overlapping segments for `averages` windowed ones every `hop` samples (Welch 1967, Eq. 11).
 
     >>> independent_averages(10, np.ones(8), 8)
     10.0
@@ -151,10 +151,10 @@ def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[F
     where = record.where
     found = [] if outputs else [Finding(where, "no channel is an output", "Say which channels are outputs")]
     if size < 8:
-        found.append(Finding(where, f"a segment has {size} samples", "Ask for segments of 8 samples or more"))
+        found.append(Finding(where, f"a segment has {size} samples", "Use segments of 8 samples or more"))
     elif record.length < size:
         lasts = f"the record lasts {record.duration:.4g} s and a segment {size / record.rate:.4g} s"
-        found.append(Finding(where, lasts, "Ask for shorter segments, that is a coarser resolution, or record longer"))
+        found.append(Finding(where, lasts, "Use shorter segments, that is a coarser resolution, or record longer"))
     return found
 
 
@@ -184,9 +184,9 @@ def _accumulate(record: Record, size: int, segments: Segments) -> tuple[Array, i
 
 
 def pool(parts: Sequence[Spectra]) -> Spectra:
-    """Spectra of several records together, weighted by their averages; an input that a record lacks was at rest in it.
+    """Combine spectra of several records, weighted by their averages; a missing input counts as inactive.
 
-    Inputs are put in the order in which they first occur. All must have the same lines and outputs.
+    Inputs are in order of their first occurrence. All records must have equal lines and outputs.
 
     >>> pool([example_spectra(), example_spectra()]).averages
     14

@@ -1,4 +1,4 @@
-"""How the noise of measured responses grows with the response itself, told from how far lines lie beside what their neighbours say."""
+"""Noise of measured responses that grows with the response, from the scatter of neighbouring lines."""
 
 from __future__ import annotations
 
@@ -8,17 +8,16 @@ from flexstage.base.number import Array
 
 _LINES, _TERMS = 9, 3
 _CERTAIN = 40.0
-"""Twice the gain of likelihood above which noise grows: of one parameter chance reaches it once in 1e9."""
+"""Twice the log-likelihood gain for significant growth: for one parameter the false-alarm rate is 1e-9."""
 _RATIOS = np.geomspace(1e-6, 1e6, 121)
 
 
 def noise_growth(frequencies: Array, responses: Array) -> Array:
-    """The factor g (p,) of noise variance a (1 + g |H|^2) for every output of responses (f, p, m); nought where it does not grow.
+    """Estimate the factor g (p,) of noise variance a (1 + g |H|^2) for every output of responses (f, p, m); zero if not significant.
 
-    Steps of a shaker, ranges of an analyser and files of few digits leave errors in proportion to the response. The variance at each line
-    is what a rational function of order two over one, its denominator shared by all channels (McKelvey & Guerin 2012), leaves of nine
-    lines; g is the most likely one (variances of six complex degrees of freedom). It takes no model of the modes: a mode that is missing
-    cannot pass for noise.
+    Shaker steps, analyser ranges and files of few digits cause errors proportional to the response. The variance at each line is the
+    residual of nine lines after a rational function of order two over one, with a common denominator (McKelvey & Guerin 2012). g is the
+    maximum-likelihood value (variances of six complex degrees of freedom). It needs no modal model: a missing mode cannot appear as noise.
 
     >>> lines, draw = np.linspace(9.0, 11.0, 400), np.random.default_rng(0).standard_normal((2, 400, 1, 1))
     >>> one, noise = 1.0 / (1j * (lines - 10.0) + 0.1)[:, None, None], 0.003 * (draw[0] + 1j * draw[1])
@@ -32,7 +31,7 @@ def noise_growth(frequencies: Array, responses: Array) -> Array:
 
 
 def _local_variance(frequencies: Array, responses: Array) -> tuple[Array, Array]:
-    """Variance and mean power (w, p, m) of what each nine neighbouring lines hold."""
+    """Variance and mean power (w, p, m) of each nine neighbouring lines."""
     windows = np.lib.stride_tricks.sliding_window_view
     near = windows(frequencies, _LINES)
     x = (near - np.mean(near, axis=1, keepdims=True)) / (0.5 * (near[:, -1:] - near[:, :1]))
@@ -51,7 +50,7 @@ def _local_variance(frequencies: Array, responses: Array) -> tuple[Array, Array]
 
 
 def _beside(basis: Array, values: Array) -> Array:
-    """What polynomials leave of the values (w, k, q)."""
+    """Residual of the values (w, k, q) after polynomials."""
     return values - basis @ (np.swapaxes(basis, 1, 2) @ values)
 
 
@@ -61,7 +60,7 @@ def _growth(variance: Array, power: Array) -> float:
     if not middle or np.sum(kept) < _LINES:
         return 0.0
     variance, power = variance[kept], power[kept]
-    free = (_LINES - _TERMS) * len(variance) / _LINES  # windows overlap: one in nine says something new
+    free = (_LINES - _TERMS) * len(variance) / _LINES  # windows overlap: one in nine is independent
 
     def unlikely(ratio: float) -> float:
         grown = 1.0 + ratio / middle * power

@@ -1,9 +1,9 @@
-"""Transform lines of whole records, and their sums over cells of frequency: all that a fit of modes needs to know of the data.
+"""Transform lines of whole records, and their sums over frequency cells: sufficient statistics for a fit of modes.
 
-A record's block of N samples, transformed without a window, obeys Y(f) = H(f) U(f) + T(f) + V(f) line by line, where T, the block's
-transient, has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 2): carried along as a response to one more
-"input" that is 1 at every line, it leaves no leakage. Within a cell, narrow beside the distance to the nearest pole, H is a polynomial of
-degree 7 to six digits; sums of products of the lines with its powers are sufficient then.
+A record's block of N samples, transformed without a window, satisfies Y(f) = H(f) U(f) + T(f) + V(f) line by line. T, the block's
+transient, has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 2): as a response to one more "input" that is
+1 at every line, it causes no leakage. Within a cell, narrow compared with the distance to the nearest pole, H is a polynomial of degree 7
+to six digits; sums of products of the lines with its powers are then sufficient.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ BLOCK = 12_000_000
 class Lines:
     """Lines of one block: `frequencies` (k,) in Hz, `drive` (k, n) and `outputs` (k, p); white noise has its variance per line.
 
-    The columns of `drive` are the inputs of these numbers, and the transients: `columns` (n,).
+    The columns of `drive` are the inputs with these indices, and the transients: `columns` (n,).
     """
 
     frequencies: Array
@@ -63,21 +63,21 @@ class Cells:
 
     @property
     def middle(self) -> Array:
-        """Middles of the cells (c,) in Hz."""
+        """Midpoints of the cells (c,) in Hz."""
         return 0.5 * (self.low + self.high)
 
     def select_cells(self, chosen: Array) -> Cells:
-        """Some of the cells."""
+        """Subset of the cells."""
         names = ("low", "high", "block", "count", "own", "cross", "power")
         return replace(self, **{name: getattr(self, name)[chosen] for name in names})
 
 
 def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
-    """Transforms of a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), the mean taken out.
+    """Transform a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), without mean.
 
-    There are `least` blocks, or as many as memory asks for.
+    At least `least` blocks, or as many as memory requires.
 
-    Its inputs are the columns `inputs` of the drive, and the transients of its blocks the columns from `first` on.
+    Its inputs are the columns `inputs` of the drive, and the transients of its blocks the columns from `first`.
 
     >>> from flexstage.experiment.records.record import Channel, Role, in_memory
     >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 8.0, np.eye(8)[:, :2])
@@ -99,7 +99,7 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int
 
 
 def block_count(record: Record, least: int = 1) -> int:
-    """How many blocks a record is transformed in.
+    """Compute the number of blocks for a record's transform.
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> block_count(in_memory([Channel("y")], 8.0, np.ones((16, 1))))
@@ -109,7 +109,7 @@ def block_count(record: Record, least: int = 1) -> int:
 
 
 def edges(poles: Array, low: float, high: float) -> Array:
-    """Limits in Hz of cells between `low` and `high`, a fraction of the distance to the nearest of `poles` (in Hz, complex).
+    """Compute cell limits in Hz between `low` and `high`, a fraction of the distance to the nearest of `poles` (in Hz, complex).
 
     >>> edges(np.array([-1.0 + 10j]), 9.0, 11.0).round(2).tolist()
     [9.0, 9.57, 10.0, 10.4, 10.83, 11.0]
@@ -122,7 +122,7 @@ def edges(poles: Array, low: float, high: float) -> Array:
 
 
 def gather_cells(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:
-    """Cells of every band, whose limits are `bounds` in Hz, gathered from the blocks one after the other.
+    """Gather the cells of every band, with limits `bounds` in Hz, block by block.
 
     >>> lines = Lines(np.arange(8.0), np.ones((8, 1)), 2.0 * np.ones((8, 1)), (0,))
     >>> [cells] = gather_cells([lines], [np.array([2.0, 4.0, 6.0])])
@@ -156,7 +156,7 @@ def _band_sums(lines: Lines, limits: Array, number: int) -> list[tuple[Array, ..
 
 
 def legendre_coefficients(values: Array) -> Array:
-    """Legendre coefficients (..., 8) of functions known at the cells' `nodes` (..., 10).
+    """Compute Legendre coefficients (..., 8) of functions with values at the cells' `nodes` (..., 10).
 
     >>> (legendre_coefficients(nodes(np.array([1.0]), np.array([3.0]))).round(12) + 0.0).tolist()
     [[2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]]
@@ -165,7 +165,7 @@ def legendre_coefficients(values: Array) -> Array:
 
 
 def nodes(low: Array, high: Array) -> Array:
-    """Frequencies (c, 10) in Hz at which functions are taken in each cell (Gauss's).
+    """Compute the Gauss nodes (c, 10) in Hz of each cell.
 
     >>> nodes(np.array([1.0]), np.array([3.0])).mean().round(12).item()
     2.0

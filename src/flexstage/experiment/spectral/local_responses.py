@@ -1,4 +1,4 @@
-"""Frequency responses without a window's leakage, and how sure they are: local polynomials on the lines of whole records."""
+"""Frequency responses without leakage, with uncertainty: local polynomials on the lines of whole records."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from flexstage.experiment.records.record import Record
 from flexstage.experiment.spectral.lines import Lines, block_count, record_lines
 
 _DEGREE, _OVER = 2, 2
-"""Of the polynomials, and how many lines there are for each of their coefficients at least."""
+"""Degree of the polynomials, and minimum number of lines per coefficient."""
 _SHARE, _WIDEST, _STEP = 0.35, 8.0, 0.25
-"""Half a window beside the distance to the nearest pole, and beside the least; from one window to the next beside half of one."""
+"""Half window relative to the distance to the nearest pole, and to the minimum; window spacing relative to half a window."""
 _TOGETHER = 20_000
 _DRIVEN = 1e-4
-"""Share of its median power that every input must have where a response is told."""
+"""Minimum power of every input, relative to its median."""
 
 
 @dataclass(frozen=True, eq=False)
 class LocalResponses:
-    """Responses (f, p, m) of outputs to inputs at `frequencies` (f,) [Hz], in the channels' units, and how far they are off (rms)."""
+    """Responses (f, p, m) of outputs to inputs at `frequencies` (f,) [Hz], in the channels' units, with standard deviations (rms)."""
 
     frequencies: Array
     values: Array
@@ -33,13 +33,13 @@ class LocalResponses:
 
 
 def local_responses(records: Sequence[Record], found: Identified) -> LocalResponses:
-    """Responses of the stage that records tell, without leakage and hardly smeared; `found` says where they are smooth.
+    """Estimate the stage's responses from records, without leakage and with little smearing; `found` defines their smoothness.
 
-    Y(f) = H(f) U(f) + T(f) + V(f) on the lines of a whole block, H and the transient T polynomials of second degree over twice as many
-    lines as they have coefficients or more: the local polynomial method (Pintelon & Schoukens, System Identification, 2nd ed., 2012,
-    ch. 7). Windows reach a third of the way to the nearest pole, eight times the least at most. Blocks are weighted by what they leave.
-    Left out are lines at which an input has less than 1e-4 of its median power. Tones are taken out before, as `identify` does. A mode
-    narrower than the least window, 3 (m + 1) lines to either side, is smeared, and what is smeared counts as noise.
+    Y(f) = H(f) U(f) + T(f) + V(f) on the lines of a whole block, H and the transient T polynomials of second degree over at least twice as
+    many lines as coefficients: the local polynomial method (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 7). Windows
+    extend over a third of the distance to the nearest pole, at most eight times the minimum. Blocks are weighted by their residuals. Lines
+    with an input below 1e-4 of its median power are omitted. Tones are removed before, as in `identify`. A mode narrower than the minimum
+    window, 3 (m + 1) lines to each side, is smeared, and the smearing counts as noise.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -68,12 +68,12 @@ def local_responses(records: Sequence[Record], found: Identified) -> LocalRespon
 
 
 def _least_reach(record: Record) -> float:
-    """Half of the least window, in lines."""
+    """Half of the minimum window, in lines."""
     return 0.5 * _OVER * (_DEGREE + 1) * (len(record.inputs) + 1)
 
 
 def _windows(poles: Array, band: tuple[float, float], least: float) -> tuple[Array, Array]:
-    """Middles and half widths [Hz] of the windows, which are the least times powers of two.
+    """Centres and half widths [Hz] of the windows, the minimum times powers of two.
 
     >>> [each.tolist() for each in _windows(np.array([-1.0 + 20.0j]), (0.0, 10.0), 1.0)]
     [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], [1.0, 2.0, 2.0, 4.0, 4.0, 4.0, 2.0, 2.0, 1.0]]
@@ -90,7 +90,7 @@ def _windows(poles: Array, band: tuple[float, float], least: float) -> tuple[Arr
 
 
 def _block_responses(lines: Lines, centres: Array, halves: Array) -> Iterator[tuple[Array, Array, Array]]:
-    """Numbers of windows, with their responses (w, p, m) and deviations, infinite where an input is silent."""
+    """Window indices, with their responses (w, p, m) and deviations, infinite for an inactive input."""
     inputs = lines.drive.shape[1] - 1
     usual = np.median(np.abs(lines.drive[:, :inputs]) ** 2, axis=0)
     for half in np.unique(halves):
@@ -107,7 +107,7 @@ def _block_responses(lines: Lines, centres: Array, halves: Array) -> Iterator[tu
 
 
 def _polynomial_fit(away: Array, drive: Array, outputs: Array) -> tuple[Array, Array]:
-    """Responses (w, p, m) at nought and their deviations: polynomials in `away` (w, l) times the drive (w, l, m+1) with its transient."""
+    """Responses (w, p, m) at zero and their deviations: polynomials in `away` (w, l) times the drive (w, l, m+1) with its transient."""
     inputs, number = drive.shape[2] - 1, away.shape[1]
     sizes = np.maximum(np.linalg.norm(drive, axis=1), 1e-300)
     powers = away[:, :, None] ** np.arange(_DEGREE + 1)
@@ -116,6 +116,6 @@ def _polynomial_fit(away: Array, drive: Array, outputs: Array) -> tuple[Array, A
     inverse = np.linalg.pinv(turned @ rows, rcond=1e-12, hermitian=True)
     fitted = inverse @ (turned @ outputs)
     noise = np.sum(np.abs(outputs - rows @ fitted) ** 2, axis=1) / (number - rows.shape[2])
-    own = np.real(np.diagonal(inverse, axis1=1, axis2=2))[:, :inputs]  # the coefficients of nought degree come first
+    own = np.real(np.diagonal(inverse, axis1=1, axis2=2))[:, :inputs]  # the coefficients of degree zero come first
     scale = sizes[:, None, :inputs]
     return np.swapaxes(fitted[:, :inputs], 1, 2) / scale, np.sqrt(noise[:, :, None] * own[:, None, :]) / scale

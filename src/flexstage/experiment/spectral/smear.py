@@ -1,4 +1,4 @@
-"""What a window does to a resonance: averaged windowed spectra show the response smeared, and how is known in closed form."""
+"""Effect of a window on a resonance: averaged windowed spectra show a smeared response, in closed form."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from flexstage.experiment.spectral.cross_spectra import Window
 _NEAR = 0.7
 _TERMS = 16
 SMEARING = (Window.BOXCAR, Window.HANN)
-"""Windows whose effect is known here."""
+"""Windows with a known effect."""
 
 
 @dataclass(frozen=True)
 class Smear:
     """Segments of `seconds` under a window.
 
-    Under white noise the estimate's impulse response is the true one times the window's autocorrelation r(t/T): it is divided out by
-    fitting 1/(j f - p) smeared in the same way.
+    For white noise the estimate's impulse response is the true one times the window's autocorrelation r(t/T). The fit accounts for it by
+    functions 1/(j f - p) smeared in the same way.
     """
 
     window: Window
     seconds: float
 
     def functions(self, frequencies: Array, poles: Array) -> tuple[Array, Array]:
-        """1/(j f - p) smeared (..., k) and its derivative by p, poles p in Hz (rad/s over 2 pi).
+        """Smeared functions 1/(j f - p) (..., k) and derivatives by p, poles p in Hz (rad/s over 2 pi).
 
         >>> sharp, smeared = 1 / (1j * 12.0 - (-1 + 10j)), Smear(Window.HANN, 1000.0).functions(np.array([12.0]), np.array([-1 + 10j]))[0]
         >>> bool(abs(smeared[0, 0] / sharp - 1.0) < 1e-3)

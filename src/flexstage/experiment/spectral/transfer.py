@@ -15,17 +15,17 @@ _DEPENDENT, _NOTHING = 1e-9, 1e-15
 
 @check_arguments
 def h1(spectra: Spectra) -> Responses:
-    """H1 = G_yx G_xx^-1, the least-squares estimate for noise at the outputs, any number of correlated inputs (Bendat & Piersol, ch. 7).
+    """Estimate H1 = G_yx G_xx^-1, least squares for noise at the outputs, any number of correlated inputs (Bendat & Piersol, ch. 7).
 
-    H_ij = output i over input j. The multiple coherence's share of every entry is given by `ordinary_coherence`. Raises `DesignError` where
-    inputs are not independent of one another: their spectra cannot be told apart then, whatever the estimate.
+    H_ij = output i over input j. See `ordinary_coherence` for every entry's coherence. Raises `DesignError` for dependent inputs, whose
+    effects no estimate can separate.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> h1(example_spectra()).values[3].round(9).real.tolist()
     [[3.0]]
     """
     require(dependent_inputs(spectra))
-    # Lines without any input, such as the mean's, have no response: a trace of power keeps them at nought.
+    # lines without input, such as the mean's, have no response: a trace of power gives zero
     trace = _NOTHING * np.real(np.mean(_diagonal(spectra.xx))) * np.eye(spectra.xx.shape[1])
     values = np.swapaxes(np.linalg.solve(np.swapaxes(spectra.xx + trace, 1, 2), np.swapaxes(spectra.yx, 1, 2)), 1, 2)
     return _responses(spectra, values, "H1")
@@ -33,10 +33,9 @@ def h1(spectra: Spectra) -> Responses:
 
 @check_arguments
 def h2(spectra: Spectra) -> Responses:
-    """H2 = G_yy G_xy^-1, the estimate for noise at the inputs; a least-squares inverse where outputs outnumber inputs.
+    """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; a least-squares inverse for more outputs than inputs.
 
-    With fewer outputs than inputs there is no such estimate: a `DesignError`. It has more variance than H1 and is biased upwards by noise
-    at the outputs.
+    Undefined for fewer outputs than inputs: raises `DesignError`. It has more variance than H1 and an upward bias by noise at the outputs.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> h2(example_spectra()).values[3].round(9).real.tolist()
@@ -50,9 +49,9 @@ def h2(spectra: Spectra) -> Responses:
 
 
 def spectral_ratio(spectra: Spectra) -> Responses:
-    """The paper's T_ij = G_ij / G_ii (Shin & Moon, Eq. 29), in our order: output over input.
+    """Compute the paper's T_ij = G_ij / G_ii (Shin & Moon, Eq. 29), in the order output over input.
 
-    It equals H1 where one input acts alone or inputs are uncorrelated, and no transfer function elsewhere.
+    It equals H1 for a single input or uncorrelated inputs, and is not a transfer function otherwise.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> spectral_ratio(example_spectra()).values[3].round(9).real.tolist()
@@ -62,7 +61,7 @@ def spectral_ratio(spectra: Spectra) -> Responses:
 
 
 def ordinary_coherence(spectra: Spectra) -> Array:
-    """|G_yx|^2 / (G_xx G_yy) of every output with every input, (f, p, m), between 0 and 1.
+    """Compute |G_yx|^2 / (G_xx G_yy) of every output with every input, (f, p, m), between 0 and 1.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> ordinary_coherence(example_spectra())[3].round(9).tolist()
@@ -73,9 +72,9 @@ def ordinary_coherence(spectra: Spectra) -> Array:
 
 
 def multiple_coherence(spectra: Spectra) -> Array:
-    """The share (f, p) of every output's power that all inputs together explain: H1 G_xx H1^H / G_yy (Bendat & Piersol, ch. 7).
+    """Compute the share (f, p) of every output's power explained by all inputs: H1 G_xx H1^H / G_yy (Bendat & Piersol, ch. 7).
 
-    Noise alone gives about the number of inputs over the number of independent averages, not nought.
+    Pure noise gives about the number of inputs over the number of independent averages, not zero.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> multiple_coherence(example_spectra())[3].round(9).tolist()
@@ -86,7 +85,7 @@ def multiple_coherence(spectra: Spectra) -> Array:
 
 
 def noise_density(spectra: Spectra) -> Array:
-    """What inputs do not explain of the outputs' power, (f, p), freed of the bias by the number of averages.
+    """Estimate the output power unexplained by inputs, (f, p), corrected for the bias by the number of averages.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)
@@ -99,7 +98,7 @@ def noise_density(spectra: Spectra) -> Array:
 
 
 def dependent_inputs(spectra: Spectra) -> list[Finding]:
-    """Findings where inputs are linear combinations of one another: the smallest eigenvalue of their coherence matrix is nought.
+    """Check for linearly dependent inputs: the smallest eigenvalue of their coherence matrix is zero.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> dependent_inputs(example_spectra())
@@ -112,16 +111,16 @@ def dependent_inputs(spectra: Spectra) -> list[Finding]:
     power = np.real(np.diagonal(mean))
     dead = [spectra.inputs[index].name for index in range(count) if power[index] <= 0.0]
     if dead:
-        return [Finding(name, "the input is constant", "Leave it out, or drive it") for name in dead]
+        return [Finding(name, "the input is constant", "Omit it, or drive it") for name in dead]
     values, vectors = np.linalg.eigh(mean / np.sqrt(np.outer(power, power)))
     if values[0] > _DEPENDENT * count and spectra.averages >= count:
         return []
     if spectra.averages < count:
         what = f"{spectra.averages} averages cannot tell {count} inputs apart"
-        return [Finding("inputs", what, "Record longer, or ask for a coarser resolution")]
+        return [Finding("inputs", what, "Record longer, or request a coarser resolution")]
     involved = [spectra.inputs[index].name for index in np.flatnonzero(np.abs(vectors[:, 0]) > 0.1)]
     what = f"{' and '.join(involved)} are not independent (smallest eigenvalue of their coherence {max(values[0], 0.0):.1e})"
-    return [Finding("inputs", what, "Drive them by independent noise, or leave out all but one")]
+    return [Finding("inputs", what, "Drive them by independent noise, or omit all but one")]
 
 
 def _diagonal(matrices: Array) -> Array:

@@ -1,1 +1,1 @@
-"""Model updating: the numbers that make theory agree with a test."""
+"""Model updating: parameters that make the model agree with a test."""

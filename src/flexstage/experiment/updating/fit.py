@@ -1,4 +1,4 @@
-"""Bayesian least squares: residuals in standard deviations of the data, parameters in those of their priors."""
+"""Bayesian least squares: residuals in standard deviations of the data, parameters in prior standard deviations."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _State = TypeVar("_State")
 _MOST_STEPS = 40
 _HALVINGS = 8
 _STILL = 1e-5
-"""Of a prior standard deviation: a step shorter than that ends the search."""
+"""Step length, in prior standard deviations, that ends the iteration."""
 _NEAR = 1e-3
-"""A step shorter than that ends it too, where none lowers the cost: rounding is all that is left."""
+"""Step length that also ends it if no step lowers the cost: only rounding remains."""
 
 
 @dataclass(frozen=True)
 class Problem(Generic[_State]):
-    """What is fitted: `state` at parameters from the state before, its weighted `residuals` (n,) and their `slopes` (n, P).
+    """Least-squares problem: `state` at parameters from the previous state, its weighted `residuals` (n,) and `slopes` (n, P).
 
-    Residuals are data less theory over the data's standard deviation, slopes those of theory; parameters have the unit matrix as prior.
+    Residuals are data minus model over the data's standard deviation, slopes the model's; parameters have a unit prior covariance.
     """
 
     state: Callable[[Array, _State], _State]
@@ -35,7 +35,7 @@ class Problem(Generic[_State]):
 
 @dataclass(frozen=True, eq=False)
 class Fitted(Generic[_State]):
-    """The most probable parameters (P,), the state there, its residuals (n,) and slopes (n, P), and how many steps led there."""
+    """Solution: the most probable parameters (P,), the state, its residuals (n,) and slopes (n, P), and the number of steps."""
 
     parameters: Array
     state: _State
@@ -45,14 +45,14 @@ class Fitted(Generic[_State]):
 
     @property
     def cost(self) -> float:
-        """Chi-square of data and priors, |r|^2 + |u|^2."""
+        """Chi-squared of data and priors, |r|^2 + |u|^2."""
         return _cost(self.residuals, self.parameters)
 
 
 def gauss_newton(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
-    """Minimise |r(u)|^2 + |u|^2 by Gauss-Newton steps, halved until they lead down.
+    """Minimise |r(u)|^2 + |u|^2 by Gauss-Newton steps with step halving.
 
-    Raises `DesignError` where no end is found, or steps lead to designs that cannot be read.
+    Raises `DesignError` without convergence, or if steps lead to invalid designs.
 
     >>> line = Problem(lambda u, _: u, lambda u: 3.0 * (1.0 - u), lambda u: np.array([[3.0]]))
     >>> gauss_newton(line, np.zeros(1), np.zeros(1)).parameters.round(9).tolist()  # 9 / (9 + 1)
@@ -73,7 +73,7 @@ def gauss_newton(problem: Problem[_State], start: Array, state: _State) -> Fitte
         if taken is None or length < _STILL:
             return Fitted(here, state, residuals, slopes, count)
     what = f"after {count} steps the numbers still move by {length:.2g} prior standard deviations"
-    raise refuse("update", what, "State narrower priors, free fewer numbers, or begin with a design nearer to the test")
+    raise refuse("update", what, "Specify narrower priors, free fewer numbers, or start with a design nearer to the test")
 
 
 def _step(slopes: Array, residuals: Array, here: Array) -> Array:
@@ -82,7 +82,7 @@ def _step(slopes: Array, residuals: Array, here: Array) -> Array:
 
 
 def _descend(problem: Problem[_State], here: Array, state: _State, residuals: Array, step: Array) -> tuple[Array, _State, Array] | None:
-    """The first of ever shorter steps that lowers the cost; `None` where none does."""
+    """First of decreasing steps that lowers the cost; `None` without one."""
     cost = _cost(residuals, here)
     for halving in range(_HALVINGS):
         there = here + step * 0.5**halving

@@ -1,4 +1,4 @@
-"""The numbers of a description that a test may change, and what is known of them before it."""
+"""Free parameters of an update, with their priors."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from flexstage.mechanism.mechanism import Mechanism
 
 @dataclass(frozen=True)
 class Prior(CheckedFields):
-    """Prior of an update, each as a relative standard deviation: all of it assumed unless it is stated.
+    """Priors of an update, as relative standard deviations, with default assumptions.
 
-    `prior` of every free number, `priors` those of single ones by address; `model_error` of theory's frequencies, whatever its numbers;
-    `gain_error` that of static gains (of theory, and of the scale of gauges and drives), `None` where gains are not compared.
+    `prior` applies to every free number, `priors` to single ones by address. `model_error` applies to the model's frequencies, for any
+    parameters. `gain_error` applies to static gains (model, and scale of gauges and drives), `None` without gains.
     """
 
     prior: float = 0.1
@@ -36,9 +36,9 @@ DEFAULT = Prior()
 
 @dataclass(frozen=True, eq=False)
 class Free:
-    """Free numbers by full address: units, values (P,) before, and prior standard deviations (P,) of their logarithms.
+    """Free numbers by full address: units, initial values (P,), and prior standard deviations (P,) of their logarithms.
 
-    `mechanism` is the description with the overrides made that these addresses mean.
+    `mechanism` is the description with the overrides required by these addresses.
     """
 
     mechanism: Mechanism
@@ -48,7 +48,7 @@ class Free:
     deviations: Array
 
     def multiply(self, logarithms: Array) -> Mechanism:
-        """The description with each number multiplied by the exponential of its entry (P,)."""
+        """Multiply each number of the description by the exponential of its entry (P,)."""
         result = self.mechanism
         for name, value in zip(self.names, self.values * np.exp(logarithms), strict=True):
             result = set_value(result, name, float(value))
@@ -56,7 +56,7 @@ class Free:
 
 
 def free(mechanism: Mechanism, names: Sequence[str], known: Prior = DEFAULT) -> Free:
-    """The numbers at these addresses, freed. Raises `DesignError` with every address that is unknown, ambiguous, no number, or nought.
+    """Free the numbers at these addresses. Raises `DesignError` for every address that is unknown, ambiguous, no number, or zero.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> free(double_triangle(), ["lever_notch.thickness"]).names
@@ -84,7 +84,7 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Prior = DEFAULT) -> 
 def _error_findings(known: Prior) -> list[Finding]:
     stated = {"prior": known.prior, "model error": known.model_error} | {f"prior of {name}": share for name, share in known.priors.items()}
     stated |= {} if known.gain_error is None else {"gain error": known.gain_error}
-    advice = 'Give a relative standard deviation between 0.0001 % and 100 %, e.g. "5 %"'
+    advice = 'Use a relative standard deviation between 0.0001 % and 100 %, e.g. "5 %"'
     return [Finding(where, f"{share:g} is none", advice) for where, share in stated.items() if not 1e-6 <= share <= 1.0]
 
 
@@ -103,7 +103,7 @@ def _address_findings(mechanism: Mechanism, names: Sequence[str], priors: Sequen
 
 
 def _of_link(mechanism: Mechanism, finding: Finding) -> Finding:
-    """Which links are meant where an address begins with the name of one."""
+    """Links of an address that starts with a link name."""
     link, _, rest = finding.where.strip().partition(".")
     units = [unit for unit, drawn in mechanism.units.items() if link in drawn.links]
     if not units or not rest:
@@ -123,7 +123,7 @@ def _number_findings(mechanism: Mechanism, names: Sequence[str]) -> list[Finding
 
 
 def _advise(mechanism: Mechanism, finding: Finding) -> Finding:
-    """What to free where the mass of a drawn body is meant."""
+    """Hint for the mass of a drawn body."""
     body = canonical(mechanism, finding.where).split(".")
     if body[-1] != "mass" or body[:1] != ["bodies"] or not mechanism.bodies[body[1]].solids:
         return finding
@@ -136,7 +136,7 @@ def _advise(mechanism: Mechanism, finding: Finding) -> Finding:
 def _value_findings(name: str, value: object) -> list[Finding]:
     number = np.asarray(value)
     if number.ndim:
-        return [Finding(name, f"it holds {number.size} values", "Update one design at a time")]
+        return [Finding(name, f"wrong number of values (got {number.size}, expected 1)", "Update one design at a time")]
     if number == 0.0:
-        return [Finding(name, "it is 0, of which no share can be uncertain", "Free another number, or state a value that is not 0")]
+        return [Finding(name, "zero has no relative uncertainty", "Free another number, or use a value that is not 0")]
     return []

@@ -1,4 +1,4 @@
-"""Static gains of a test: its frequency responses below the modes, led back to zero frequency."""
+"""Static gains of a test: frequency responses below the modes, extrapolated to zero frequency."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 
 _SHARE = 0.35
-"""Of the lowest mode's frequency: lines up to there are used."""
+"""Upper limit of the lines used, relative to the lowest mode."""
 _SKIPPED = 2
-"""Lines next to zero, where the window lets drift and offset in."""
+"""Lines omitted next to zero, with drift and offset by the window."""
 _FEWEST = 8
 _NEIGHBOURS = 1.94
 """Lines per independent one: Hann's neighbours share (2/3)^2 and (1/6)^2 of their variance on either side."""
@@ -29,7 +29,7 @@ _LENGTH, _VOLTAGE = dimension_of("m"), dimension_of("V")
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """Static gains (p, m) in m per m of free stroke, and the standard deviations of their noise."""
+    """Static gains (p, m) in m per m of free stroke, and their standard deviations by noise."""
 
     outputs: tuple[str, ...]
     inputs: tuple[str, ...]
@@ -38,7 +38,7 @@ class Gains:
 
     @property
     def scale(self) -> Array:
-        """The largest gain (m,) of each actuator."""
+        """Largest gain (m,) of each actuator."""
         return np.max(np.abs(self.values), axis=0)
 
     def errors(self, share: float) -> Array:
@@ -47,11 +47,11 @@ class Gains:
 
 
 def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identified, outputs: tuple[str, ...]) -> Gains:
-    """Gains of the named outputs to the record's inputs that are strokes of the stage.
+    """Estimate the gains of the named outputs to the record's inputs that are strokes of the stage.
 
     The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2), least squares: the lowest mode exactly, higher
-    ones, lags and an amplifier's bandwidth by even powers; a is the gain. Drives in volts count by their stack's stroke over its range
-    of voltage. Raises `DesignError` where no input is a stroke, no unit leads to metres, or too few lines are below the modes.
+    ones, lags and an amplifier's bandwidth by even powers; a is the gain. A drive in volts is converted by its stack's stroke and voltage
+    range. Raises `DesignError` without a stroke input, for units not convertible to metres, or for too few lines below the modes.
     """
     strokes = drivable_actuators(mechanism, model)
     inputs = tuple(channel.name for channel in experiment.inputs if channel.name in strokes)
@@ -72,19 +72,19 @@ def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identif
 
 
 def _low_lines(experiment: Identified) -> tuple[Array, Array]:
-    """Lines below the modes over the lowest mode's frequency, and the responses there."""
+    """Lines below the modes relative to the lowest mode, and the responses there."""
     frequencies, lowest = experiment.responses.frequencies, float(experiment.frequencies[0])
     step = float(frequencies[1] - frequencies[0])
     chosen = (frequencies > (_SKIPPED + 0.5) * step) & (frequencies <= _SHARE * lowest)
     count = int(np.sum(chosen))
     if count < _FEWEST:
         what = f"{count} lines are below {_SHARE * lowest:.3g} Hz ({_SHARE:g} of the lowest mode), {_FEWEST} are needed for static gains"
-        raise refuse(experiment.responses.source or "record", what, "Record longer, from lower frequencies on, or compare without gains")
+        raise refuse(experiment.responses.source or "record", what, "Record longer, from lower frequencies, or compare without gains")
     return frequencies[chosen] / lowest, experiment.responses.values[chosen]
 
 
 def _extrapolate_to_zero(lines: Array, values: Array) -> tuple[Array, Array]:
-    """Values (p, m) at zero frequency of the functions through values (f, p, m), and their standard deviations."""
+    """Extrapolated values (p, m) at zero frequency of values (f, p, m), and their standard deviations."""
     rise = 1.0 - lines**2
     powers = np.stack([np.ones_like(lines), lines**2 / rise, lines**4 / rise], axis=1)
     flat = values.reshape(len(lines), -1)
@@ -95,7 +95,7 @@ def _extrapolate_to_zero(lines: Array, values: Array) -> tuple[Array, Array]:
 
 
 def _unit_findings(mechanism: Mechanism, channels: list[Channel]) -> list[Finding]:
-    advice = "State the channel's unit as a length or, of a drive, in volts, or compare without gains"
+    advice = "Specify the channel's unit as a length or, for a drive, in volts, or compare without gains"
     return [
         Finding(channel.name, f'its unit "{channel.unit}" leads to no stroke or gap in metres', advice)
         for channel in channels
@@ -104,7 +104,7 @@ def _unit_findings(mechanism: Mechanism, channels: list[Channel]) -> list[Findin
 
 
 def is_length(unit: str) -> bool:
-    """Whether a unit is one of length.
+    """Check whether a unit is a length.
 
     >>> is_length("um"), is_length("mV"), is_length("")
     (True, False, False)
@@ -113,7 +113,7 @@ def is_length(unit: str) -> bool:
 
 
 def metres(mechanism: Mechanism, channel: Channel) -> float:
-    """Metres per unit of a channel; NaN where its unit leads to none."""
+    """Return the metres per unit of a channel; NaN for other units."""
     if unit_problem(channel.unit) is not None:
         return float("nan")
     unit = dimension_of(channel.unit)

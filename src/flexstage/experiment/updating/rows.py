@@ -1,4 +1,4 @@
-"""What a test and theory are compared by: frequencies of paired modes, of repeated ones their mean, and static gains."""
+"""Data compared between test and model: frequencies of paired modes, the mean of repeated ones, and static gains."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from flexstage.models.lumped import lumped
 
 @dataclass(frozen=True)
 class ModeRow:
-    """Modes of theory that belong together (`modes`, by rising frequency of the whole model, from 0), and what was measured of them.
+    """Associated modes of the model (`modes`, ascending over the whole model, from 0), and their measured data.
 
-    `frequency` [Hz] is sqrt(mean of f^2) over the `measured` modes, the square root of the mean eigenvalue: symmetric in repeated
-    modes, hence smooth in every parameter; `deviation` its relative standard deviation.
+    `frequency` [Hz] is sqrt(mean of f^2) over the `measured` modes, the square root of the mean eigenvalue: symmetric in repeated modes,
+    hence smooth in every parameter; `deviation` its relative standard deviation.
     """
 
     name: str
@@ -38,7 +38,7 @@ class ModeRow:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """One design on the way: its lumped model, its modes, and which of them each row has."""
+    """Intermediate design: its lumped model, its modes, and the modes of each row."""
 
     mechanism: Mechanism
     model: LinearModel
@@ -47,13 +47,13 @@ class Design:
 
     @property
     def frequencies(self) -> Array:
-        """Of every row: sqrt(mean f^2) [Hz]."""
+        """Frequencies of all rows: sqrt(mean f^2) [Hz]."""
         means = [np.mean(self.solved.values[list(modes)]) for modes in self.modes]
         return np.sqrt(np.array(means)) / (2.0 * np.pi)
 
 
 def mode_rows(mechanism: Mechanism, compared: Compared, experiment: Identified) -> tuple[ModeRow, ...]:
-    """The rows that a comparison gives: one for each platform mode that was found, one for all of a group of repeated modes."""
+    """Extract the rows of a comparison: one for each identified platform mode, one for each group of repeated modes."""
     places = platform_modes(mechanism, lumped(mechanism)).platform
     repeated = [group.numbers for group in compared.repeated]
     groups = [*repeated, *((row.number,) for row in compared.modes if not any(row.number in group for group in repeated))]
@@ -77,7 +77,7 @@ def _mean(experiment: Identified, measured: tuple[int, ...]) -> tuple[float, flo
 
 
 def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
-    """The design that the rows were paired with.
+    """Return the design of the pairing.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),)).frequencies.round(1).tolist()
@@ -88,9 +88,9 @@ def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
 
 
 def follow_modes(before: Design, mechanism: Mechanism) -> Design:
-    """The design at other values, each row with the modes that lie in the subspace of its modes before.
+    """Solve the design at other values, each row with the modes in the subspace of its previous modes.
 
-    Shapes are compared with M of the design before, all rows at once, so that crossing modes stay with their rows.
+    Shapes are compared with M of the previous design, all rows at once, so that crossing modes stay with their rows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
@@ -101,7 +101,7 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
     solved = eigen(model)
     if len(solved.shapes) != len(before.solved.shapes):
         what = f"its numbers moved so far that the model has {len(solved.shapes)} coordinates where it had {len(before.solved.shapes)}"
-        raise refuse("update", what, "Check units and names of the record's channels (flexstage compare), or state narrower priors")
+        raise refuse("update", what, "Check units and names of the record's channels (flexstage compare), or specify narrower priors")
     weighted = before.model.inertia_matrix @ before.solved.shapes
     likeness = []
     for modes in before.modes:
@@ -114,7 +114,7 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
 
 
 def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
-    """d ln f / d p (rows, P) of every row at the design, exact: sum of phi^T (dK - lambda dM) phi over 2 sum of lambda.
+    """Compute d ln f / d p (rows, P) of every row at the design, exact: sum of phi^T (dK - lambda dM) phi over 2 sum of lambda.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
@@ -133,12 +133,12 @@ def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
 
 
 def static_gains(design: Design, gains: Gains) -> Array:
-    """Theory's static gains (p, m) of the measured ones."""
+    """Compute the model's static gains (p, m) for the measured ones."""
     return static_gain(design.model, gains.outputs, gains.inputs).values
 
 
 def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
-    """Derivatives (p, m, P) of theory's static gains."""
+    """Compute derivatives (p, m, P) of the model's static gains."""
     result = np.zeros((*gains.values.shape, len(names)))
     for chunk, model in _complex_steps(design, names):
         moved = slope(static_gain(model, gains.outputs, gains.inputs).values)
@@ -152,7 +152,7 @@ def _complex_steps(design: Design, names: tuple[str, ...]) -> list[tuple[list[in
 
 
 def same_pairs(rows: tuple[ModeRow, ...], design: Design, again: tuple[ModeRow, ...]) -> bool:
-    """Whether a comparison made `again` at a design gives measured modes to the same modes of theory as the rows followed to there.
+    """Check whether a new comparison, `again`, pairs measured modes with the same model modes as the tracked rows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Tables of an update: numbers before and after a test, what the test tells, and how theory agrees."""
+"""Tables of an update: numbers before and after a test, identifiability, and agreement of the model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _MOST_GAINS = 12
 
 
 def update_tables(found: Updated) -> Iterator[Table | None]:
-    """All tables of an update."""
+    """List all tables of an update."""
     yield result_table(found.parameters, notes=found.notes, provenance=found.provenance)
     yield residual_table(found)
     if len(found.addresses) > 1:
@@ -21,7 +21,7 @@ def update_tables(found: Updated) -> Iterator[Table | None]:
 
 
 def residual_table(found: Updated) -> Table | None:
-    """Data by test and theory before and after: all frequencies, and of gains the largest misfits."""
+    """Tabulate data by test and by model before and after: all frequencies, and the gains of largest misfit."""
     modes = [each for each in found.residuals if each.unit == "Hz"]
     gains = sorted((each for each in found.residuals if each.unit != "Hz"), key=lambda each: -abs(each.misfit_before))
     before, after = number(found.chi_square_before, 3), number(found.chi_square, 3)

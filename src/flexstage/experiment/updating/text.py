@@ -1,4 +1,4 @@
-"""The design file of an updated stage: the text given, with the new values and where they are from; comments stay."""
+"""Design file of an updated stage: the original text with new values and their provenance; comments stay."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ _DIGITS = 7
 
 
 def updated_text(text: str, found: Updated, record: str, *, where: str = "text") -> str:
-    """The text of the stage's design file with the values after the update, each tagged `derived update RECORD` with its deviation.
+    """Format the stage's design file with the updated values, each tagged `derived update RECORD` with its deviation.
 
-    Raises `DesignError` where the file's layout does not allow it.
+    Raises `DesignError` if the file's layout does not allow it.
     """
     values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.addresses, found.after.tolist(), strict=True)}
     tags = {name: _tag(found, index, record) for index, name in enumerate(found.addresses)}

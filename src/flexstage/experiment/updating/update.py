@@ -1,4 +1,4 @@
-"""Model updating: the numbers that make theory agree with a test, how well it tells them, and a design file that states them."""
+"""Model updating: parameters that make the model agree with a test, their identifiability, and the updated design file."""
 
 from __future__ import annotations
 
@@ -48,16 +48,16 @@ _CONTRADICTING = 10.0
 
 
 class Told(Enum):
-    """How well a test tells a number: by the share of its prior variance that is left."""
+    """Identifiability of a number: the share of its prior variance that remains."""
 
     WELL = "identified"
     """At most 10 %."""
     WEAKLY = "weakly identified"
     """At most 20 %."""
     NOT = "not identifiable"
-    """More: the value is the prior's as much as the test's."""
+    """More: the value depends on the prior as much as on the test."""
     WITHHELD = "withheld"
-    """Theory and test are so far apart that the test tells nothing of single numbers."""
+    """Model and test differ too much for conclusions on single numbers."""
 
 
 _GRADES = {Told.WELL: Mark.PASS, Told.WEAKLY: Mark.WARN, Told.NOT: Mark.FAIL, Told.WITHHELD: Mark.FAIL}
@@ -67,9 +67,9 @@ _REMAINING = Heading("remaining variance", digits=2, unit="%")
 
 @dataclass(frozen=True)
 class Residual:
-    """One datum [Hz, or m/m for gains]: measured, by theory before and after, and the relative standard deviation it was weighted with.
+    """Datum [Hz, or m/m for gains]: measured, by model before and after, and the relative standard deviation of its weight.
 
-    That of a gain is relative to the largest gain of its actuator, `scale`.
+    For a gain the deviation is relative to the largest gain of its actuator, `scale`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -88,20 +88,20 @@ class Residual:
 
     @property
     def misfit_before(self) -> Annotated[float, VIEW, Heading(digits=3)]:
-        """Measured less theory before, in standard deviations."""
+        """Measured minus model before, in standard deviations."""
         return (self.measured - self.before) / (self.scale * self.deviation)
 
     @property
     def misfit_after(self) -> Annotated[float, VIEW, Heading(digits=3, mark=Graded(2.0, 3.0))]:
-        """Measured less theory after, in standard deviations."""
+        """Measured minus model after, in standard deviations."""
         return (self.measured - self.after) / (self.scale * self.deviation)
 
 
 @dataclass(frozen=True)
 class UpdatedNumber:
-    """One number before and after, in SI; `change` is relative, deviations are of the logarithm.
+    """Updated number before and after, in SI; `change` is relative, deviations are of the logarithm.
 
-    `prior_variance_left` is the share that the test leaves; `told` and `verdict` say how well it tells the number.
+    `prior_variance_left` is the remaining share of the prior variance; `told` and `verdict` describe the identifiability.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -121,7 +121,7 @@ class UpdatedNumber:
 
     @property
     def change(self) -> Annotated[float, VIEW, RATIO, Heading(digits=3, unit="%")]:
-        """Value after over value before, less one."""
+        """Value after relative to before, minus one."""
         return self.after / self.before - 1.0
 
     @property
@@ -132,18 +132,18 @@ class UpdatedNumber:
 
     @property
     def prior_variance_left(self) -> Annotated[float, VIEW, RATIO, _REMAINING]:
-        """Share of the prior's variance."""
+        """Remaining share of the prior variance."""
         return (self.deviation / self.prior_deviation) ** 2
 
 
 @dataclass(frozen=True)
 class Combination:
-    """A combination of numbers, in prior standard deviations: 1/(1 + s^2) of its prior variance is left at a singular value s."""
+    """Combination of numbers, in prior standard deviations, with remaining prior variance 1/(1 + s^2) at a singular value s."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Identifiable combinations",
         "combination singular_value prior_variance_left",
-        notes=("In prior standard deviations. A singular value of 1 halves the prior variance; far below 1, it stays as it was.",),
+        notes=("In prior standard deviations. A singular value of 1 halves the prior variance; far below 1, it has no effect.",),
     )
 
     singular_value: Annotated[float, Heading(digits=3)]
@@ -151,23 +151,23 @@ class Combination:
 
     @property
     def combination(self) -> str:
-        """Its parts of more than 0.05, for tables."""
+        """Components above 0.05, for tables."""
         return ", ".join(f"{part:+.2f} {name}" for name, part in self.direction.items() if abs(part) > 0.05)
 
     @property
     def prior_variance_left(self) -> Annotated[float, VIEW, RATIO, _REMAINING]:
-        """Share of the prior's variance."""
+        """Remaining share of the prior variance."""
         return 1.0 / (1.0 + self.singular_value**2)
 
 
 @dataclass(frozen=True, eq=False)
 class Updated(InNotebook):
-    """Numbers before and after a test, SI, with the standard deviations of their logarithms (relative ones, where small).
+    """Numbers before and after a test, SI, with the standard deviations of their logarithms (relative ones, if small).
 
-    `addresses` (P) are full; `prior` (P,) and `covariance` (P, P) are of logarithms. `singular` (P,) and the columns of
-    `directions` (P, P) are combinations of parameters, in prior standard deviations, by how well the data tell them: 1/(1 + s^2) of the
-    prior variance is left. `chi_square` counts data and priors at the result, over `freedoms` data; `chi_square_before` the data alone.
-    `mechanism` is the description after. `warnings` say what not to rely on.
+    `addresses` (P) are full; `prior` (P,) and `covariance` (P, P) are of logarithms. `singular` (P,) and the columns of `directions` (P, P)
+    are parameter combinations, in prior standard deviations, by identifiability: the remaining share of the prior variance is 1/(1 + s^2).
+    `chi_square` counts data and priors at the result, over `freedoms` data; `chi_square_before` only the data. `mechanism` is the updated
+    description. `warnings` list unreliable results.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]
@@ -190,7 +190,7 @@ class Updated(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """The errors assumed, and verdicts that need more than a word, for tables."""
+        """Notes: the assumed errors, and longer statements on identifiability."""
         known = self.assumed
         gains = "" if known.gain_error is None else f", gains {100.0 * known.gain_error:.3g} %"
         errors = f"Assumed errors: frequencies of theory {100.0 * known.model_error:.3g} %{gains}; +- is one standard deviation."
@@ -198,14 +198,14 @@ class Updated(InNotebook):
 
     @property
     def parameters(self) -> Annotated[tuple[UpdatedNumber, ...], VIEW]:
-        """The numbers one by one."""
+        """List of updated numbers."""
         values = (column.tolist() for column in (self.before, self.after, self.prior, self.deviations))
         columns: tuple[Iterable[Any], ...] = (self.addresses, self.units, *values, self.told, self.verdicts)
         return tuple(UpdatedNumber(*row) for row in zip(*columns, strict=True))
 
     @property
     def combinations(self) -> Annotated[tuple[Combination, ...], VIEW]:
-        """Combinations of the numbers, best told first."""
+        """Combinations of the numbers, best identified first."""
         columns = zip(self.singular, self.directions.T, strict=True)
         return tuple(Combination(float(size), dict(zip(self.addresses, column.tolist(), strict=True))) for size, column in columns)
 
@@ -216,7 +216,7 @@ class Updated(InNotebook):
 
     @property
     def changes(self) -> Array:
-        """Values after over values before less one (P,)."""
+        """Values after relative to before, minus one (P,)."""
         return self.after / self.before - 1.0
 
     @property
@@ -227,28 +227,28 @@ class Updated(InNotebook):
 
     @property
     def remaining_variance(self) -> Array:
-        """Share (P,) of each prior variance that is left."""
+        """Remaining share (P,) of each prior variance."""
         return np.diag(self.covariance) / self.prior**2
 
     @property
     def told(self) -> tuple[Told, ...]:
-        """How well the test tells each number; withheld where data miss theory by more than three deviations on average."""
+        """Identifiability of each number; withheld if data deviate from the model by more than three deviations on average."""
         known = (Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.remaining_variance)
         return tuple(Told.WITHHELD if self.is_withheld and told is not Told.NOT else told for told in known)
 
     @property
     def is_withheld(self) -> bool:
-        """Whether theory and test contradict each other beyond what any of the numbers may be."""
+        """Whether model and test differ beyond any admissible values of the numbers."""
         return self.chi_square > _CONTRADICTING * max(1, self.freedoms)
 
     @property
     def data(self) -> str:
-        """What was compared: `frequencies`, or `frequencies and static gains`."""
+        """Compared data: `frequencies`, or `frequencies and static gains`."""
         return "frequencies" if self.assumed.gain_error is None else "frequencies and static gains"
 
     @property
     def verdicts(self) -> tuple[str, ...]:
-        """How well the test tells each number, in words: `not identifiable from frequencies` is a correct answer."""
+        """Statement on the identifiability of each number; `not identifiable from frequencies` is a valid result."""
         return tuple(self._verdict(index, told) for index, told in enumerate(self.told))
 
     @property
@@ -258,7 +258,7 @@ class Updated(InNotebook):
 
     @property
     def probability(self) -> Annotated[float, VIEW]:
-        """Probability that chi-square is this large or larger, if deviations, priors and theory hold."""
+        """Probability of a chi-squared value this large or larger, if deviations, priors and model are correct."""
         return float(scipy.special.chdtrc(self.freedoms, self.chi_square))
 
     def _verdict(self, index: int, told: Told) -> str:
@@ -275,16 +275,16 @@ class Updated(InNotebook):
 @check_arguments
 @one_thread
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Prior = DEFAULT) -> Updated:
-    """The values of the numbers at `names` that make the lumped model agree best with a test, given what is known before.
+    """Update the numbers at `names` so that the lumped model agrees best with a test, given their priors.
 
-    Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8): minimise
-    sum ((d - g(x))/sigma)^2 + sum (x/sigma_p)^2 by Gauss-Newton, derivatives exact by complex step; posterior covariance
-    (J^T W J + S^-1)^-1 at the result. Data are ln f of the modes paired as `compare` pairs them, repeated ones by their mean eigenvalue,
-    with the identified deviations and the model error; with a `gain_error` also the static gains. Intervals hold where frequencies
-    change about linearly over them.
+    Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8): minimise sum ((d -
+    g(x))/sigma)^2 + sum (x/sigma_p)^2 by Gauss-Newton, with exact derivatives by complex step. The posterior covariance at the result is
+    (J^T W J + S^-1)^-1. Data are ln f of the modes paired as in `compare`, repeated ones by their mean eigenvalue, with the identified
+    deviations and the model error; with a `gain_error` also the static gains. Intervals are valid if frequencies are about linear within
+    them.
 
-    Raises `DesignError` for unknown, ambiguous and nought numbers, those without effect, fewer data than numbers, a record without the
-    stage's gauges, and where no end is found.
+    Raises `DesignError` for unknown, ambiguous and zero numbers, those without effect, fewer data than numbers, a record without the
+    stage's gauges, and without convergence.
     """
     freed = free(mechanism, names, known)
     model = start_design(freed.mechanism, ()).model
@@ -308,13 +308,13 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
             return _as_result(data, found, compared, steps)
         rows, here = again, found.parameters
         require(_too_few_data(experiment, rows, freed, gains))
-    what = f"the pairing of modes by shape still changes after {_ROUNDS} rounds"
-    raise refuse("update", what, "State narrower priors, or begin with a design nearer to the test (flexstage compare shows the pairs)")
+    what = f"no convergence: the pairing of modes by shape still changes after {_ROUNDS} rounds"
+    raise refuse("update", what, "Specify narrower priors, or start with a design nearer to the test (flexstage compare shows the pairs)")
 
 
 @dataclass(frozen=True, eq=False)
 class _Data:
-    """The data with their weights, and the problem they make of free numbers; `gains` is absent where they are not compared."""
+    """Data with their weights, and the least-squares problem for free numbers; `gains` is absent without a comparison of gains."""
 
     freed: Free
     known: Prior
@@ -323,7 +323,7 @@ class _Data:
 
     @property
     def frequency_error(self) -> Array:
-        """Relative standard deviations (rows,) of frequencies: of the test and of theory."""
+        """Relative standard deviations (rows,) of frequencies, of test and model."""
         return np.hypot(np.array([row.deviation for row in self.rows]), self.known.model_error)
 
     @property
@@ -343,7 +343,7 @@ class _Data:
         return np.concatenate(parts)
 
     def slopes(self, design: Design) -> Array:
-        """Of theory, weighted, by prior standard deviations (n, P)."""
+        """Model slopes, weighted, by prior standard deviations (n, P)."""
         names = self.freed.names
         values = self.freed.deviations * np.array([get(design.mechanism, name) for name in names])
         parts = [frequency_slopes(design, names) * values / self.frequency_error[:, None]]
@@ -400,11 +400,11 @@ def _as_result(data: _Data, found: Fitted[Design], compared: Compared, steps: in
 
 
 def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
-    """What not to rely on, besides what the comparison says."""
+    """Warnings for unreliable results, in addition to those of the comparison."""
     freed, errors = data.freed, data.known
     if scipy.special.chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
         yield (
-            f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: theory and test differ by more than the stated "
+            f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: model and test differ by more than the assumed "
             f"errors, and the intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free "
             "what else may be off."
         )
@@ -413,28 +413,28 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
             yield f"{name} moved by {abs(moved):.2g} of its prior standard deviations of {100.0 * prior:.2g} %: something else may be off."
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
-            yield f"the repeated modes {' and '.join(map(str, group.numbers))} are compared by the {group.seen} of them seen."
+            yield f"the repeated modes {' and '.join(map(str, group.numbers))} are compared by the {group.seen} measured ones."
 
 
 def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:
     where = experiment.responses.source or "record"
     count = len(rows) + (0 if gains is None else gains.values.size)
     if not rows:
-        what = f"none of the {len(experiment.frequencies)} modes found in it is like a mode of the platform"
+        what = f"none of the {len(experiment.frequencies)} identified modes matches a platform mode"
         return [Finding(where, what, "Check names and signs of gauges and the band (flexstage compare shows both sides)")]
     if count >= len(freed.names):
         return []
     seen = ", ".join(row.name for row in rows)
-    what = f"it gives {count} data ({seen}; repeated modes count once) for {len(freed.names)} free numbers"
-    return [Finding(where, what, "Free fewer numbers, or compare static gains too" if gains is None else "Free fewer numbers")]
+    what = f"too few data (got {count}: {seen}; repeated modes count once) for {len(freed.names)} free numbers"
+    return [Finding(where, what, "Free fewer numbers, or also compare static gains" if gains is None else "Free fewer numbers")]
 
 
 def _without_effect(slopes: Array, freed: Free, gains: Gains | None) -> list[Finding]:
-    """Numbers whose prior deviation moves no datum by a millionth of the datum's deviation."""
+    """Numbers whose prior deviation changes no datum by a millionth of the datum's deviation."""
     strength = np.max(np.abs(slopes), axis=0)
     data = "frequencies compared" if gains is None else "frequencies and gains compared"
     return [
-        Finding(name, f"it has no effect on the {data}", "Take it out of the free numbers: the test tells nothing of it")
+        Finding(name, f"it has no effect on the {data}", "Remove it from the free numbers: the test has no information on it")
         for name, size in zip(freed.names, strength, strict=True)
         if size < _NO_EFFECT
     ]

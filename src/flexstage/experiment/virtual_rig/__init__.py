@@ -1,1 +1,1 @@
-"""The virtual test rig: a stage shaken by noise and measured, as a record."""
+"""Virtual test rig: a stage excited by noise and measured, as a record."""

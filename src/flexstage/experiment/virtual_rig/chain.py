@@ -1,8 +1,8 @@
-"""The chain of a virtual test in the frequency domain: from white numbers to recorded inputs and gauge readings.
+"""Measuring chain of a virtual test in the frequency domain: from white numbers to recorded inputs and gauge readings.
 
-Everything of the chain is linear and time-invariant up to the steps of the gauges, and the drive has no power above its band: the
-continuous response is, exactly, the convolution of the drive's samples with the chain's impulse response. It is taken block by block by
-transforms, with the continuous frequency response of the stage and no discretisation of it.
+The whole chain is linear and time-invariant except for the gauges' quantisation, and the drive is band-limited. The continuous response is
+therefore exactly the convolution of the drive's samples with the chain's impulse response. It is computed block by block by transforms,
+with the continuous frequency response of the stage, without discretisation.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.port import Ports, ports
 
 _FORGOTTEN = 30.0
-"""Time constants after which an impulse is forgotten: e^-30 is 1e-13."""
+"""Time constants after which an impulse response is negligible: e^-30 is 1e-13."""
 _SPREAD = 15.0
 _STEEPNESS = 4.0
 _FINER = 2
@@ -34,11 +34,11 @@ _LINES = 4096
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Transfers over the lines of a transform of three blocks of `size` samples at `finer` times the sampling rate.
+    """Transfer functions over the lines of a transform of three blocks of `size` samples at `finer` times the sampling rate.
 
-    From white numbers of unit variance: `strokes` (l, m) to the free strokes, `inputs` (l, m) to the recorded inputs [m], `outputs`
-    (l, p, m) to the gauges [m, rad], over the lines up to the end of the drive's band; `gauge` (f, p), over all lines, from white numbers
-    to the gauges' noise. `note` says how damping is taken.
+    From white numbers of unit variance: `strokes` (l, m) to the free strokes, `inputs` (l, m) to the recorded inputs [m], `outputs` (l, p,
+    m) to the gauges [m, rad], over the lines up to the end of the drive's band; `gauge` (f, p), over all lines, from white numbers to the
+    gauges' noise. `note` describes the damping model.
     """
 
     size: int
@@ -67,14 +67,14 @@ class Chain:
         return np.sqrt(self._power(np.abs(omega * self.strokes) ** 2))
 
     def _power(self, squares: Array) -> Array:
-        """Mean square from squared transfers on lines from zero up: those of negative frequency are as many again."""
+        """Mean square from squared transfer functions on lines from zero up; negative frequencies contribute equally."""
         return (2.0 * np.sum(squares, axis=0) - squares[0]) / (3 * self.size)
 
 
 def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
-    """The chain of a plan. Raises `DesignError` where the stage rings for longer than can be held.
+    """Compute the chain of a plan. Raises `DesignError` for a stage with too long a decay.
 
-    Structural damping has no form in time: each mode takes its equivalent ratio, and the note says so.
+    Structural damping has no time-domain form: each mode has its equivalent damping ratio, with a note.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -113,7 +113,7 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
 
 
 def butterworth(frequencies: Array, order: int, corner: float) -> Array:
-    """Transfer (f,) of an analogue Butterworth low-pass: product of 1/(s - p_k), p_k = e^{j pi (2k + n + 1)/(2n)}, s = j f/corner.
+    """Evaluate an analogue Butterworth low-pass (f,): product of 1/(s - p_k), p_k = e^{j pi (2k + n + 1)/(2n)}, s = j f/corner.
 
     >>> abs(butterworth(np.array([0.0, 100.0]), 6, 100.0)).round(4).tolist(), butterworth(np.array([5.0]), 0, 1.0).tolist()
     ([1.0, 0.7071], [(1+0j)])
@@ -126,12 +126,12 @@ def butterworth(frequencies: Array, order: int, corner: float) -> Array:
 
 
 def amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
-    """Shape (f,) of the drive's amplitude: 1 within the band, zero below `low`/2 and above 1.25 `high`.
+    """Evaluate the drive's amplitude shape (f,): 1 within the band, zero below `low`/2 and above 1.25 `high`.
 
     >>> (amplitude_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)) ** 2).round(6).tolist()
     [0.0, 1.0, 1.0, 0.25, 0.0]
 
-    Edges by the error function: their impulse response fades as a Gaussian, so that blocks need little of their neighbours.
+    Edges by the error function: their impulse response decays as a Gaussian, so that blocks overlap little.
     """
     low, high = band
     upper = (frequencies - high) / (TAPER * high)
@@ -143,7 +143,7 @@ def amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
 
 
 def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:
-    """Seconds after which the chain has forgotten an impulse."""
+    """Duration of the chain's impulse response [s]."""
     solved = eigen(model)
     omega, ratios = np.sqrt(solved.values), modal_ratios(model, solved, damping)
     over = np.sqrt(np.maximum(ratios**2 - 1.0, 0.0))
@@ -151,7 +151,7 @@ def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:
     slowest = int(np.argmin(decays))
     if decays[slowest] <= 0.0:
         what = f"the mode at {omega[slowest] / (2.0 * np.pi):.4g} Hz has no damping: it would ring for ever"
-        require([Finding("damping", what, "State damping, for example a modal ratio of 0.01")])
+        require([Finding("damping", what, "Specify damping, for example a modal ratio of 0.01")])
     lags = sum(_FORGOTTEN / (2.0 * np.pi * float(np.min(each, initial=np.inf))) for each in (plan.bandwidths, plan.lags))
     order = plan.setup.filter.order
     filtering = _FORGOTTEN / (2.0 * np.pi * plan.corner * np.sin(0.5 * np.pi / order)) if order else 0.0
@@ -160,16 +160,16 @@ def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:
 
 
 def _block(memory: float, rate: float) -> int:
-    """Size of blocks, a power of two: longer than the chain remembers, and than the edges of the drive's band spread both ways."""
+    """Block size, a power of two: longer than the chain's impulse response, and than the drive's spectral edges in time."""
     size = max(_SHORTEST, 2 ** int(np.ceil(np.log2(memory * rate))))
     if size > _LONGEST:
         what = f"the test rings for {memory:.4g} s, {memory * rate:.3g} samples; {_LONGEST:.3g} can be held"
-        require([Finding("damping", what, "Give more damping, a lower rate, or a band that begins at 0 or higher up")])
+        require([Finding("damping", what, "Use more damping, a lower rate, or a band with a lower limit of 0 or higher")])
     return size
 
 
 def _plant(model: LinearModel, chosen: Ports, lines: Array, damping: Damping) -> Array:
-    """H (l, p, m) of the stage, a few thousand lines at a time."""
+    """Response H (l, p, m) of the stage, a few thousand lines at a time."""
     pieces = [superpose(model, chosen, lines[start : start + _LINES], damping) for start in range(0, len(lines), _LINES)]
     return np.concatenate(pieces)
 

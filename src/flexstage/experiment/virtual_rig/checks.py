@@ -1,4 +1,4 @@
-"""What keeps a virtual test from being run: before it is planned, and once its rms values are known."""
+"""Checks of a virtual test: of its set-up, and of its plan with known rms values."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 
 _PEAK = 6.0
-"""Peaks of Gaussian noise over its rms: passed twice in 1e9 samples."""
+"""Peak over rms of Gaussian noise: exceeded twice in 1e9 samples."""
 _FEWEST = 16
 _HIGHEST_ORDER = 20
 _MOST = 2**40
 
 
 def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
-    """What is wrong with the numbers and names of a set-up, all of it.
+    """Find all errors in the numbers and names of a set-up.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -47,7 +47,7 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     if drive.band is not None and not drive.band[0] < drive.band[1]:
         yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Give 0 <= low < high in Hz")
     if amplifier.bandwidth is not None and amplifier.resistance is not None:
-        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
+        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Specify one of them: the other follows")
     if not 0 <= order <= _HIGHEST_ORDER:
         yield Finding("filter", f"its order is {order}", f"Give an order from 0 (none) to {_HIGHEST_ORDER}")
 
@@ -74,11 +74,11 @@ def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup)
         elif asked is not None and asked.count(name) > 1:
             yield Finding(f"actuator {name}", f"it is named {asked.count(name)} times", "Name it once")
     if not expand(mechanism).gauges:
-        yield Finding("gauges", "the stage has no gauge: nothing would be recorded", "State gauges in the design")
+        yield Finding("gauges", "the stage has no gauge to record", "Specify gauges in the design")
 
 
 def plan_findings(plan: Plan) -> Iterator[Finding]:
-    """What the plan asks of stacks that do not state it, and of a clock settled by the stage.
+    """Find missing stack data for the plan, and errors of its default sampling.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -101,7 +101,7 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
 
 
 def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
-    """Peaks of six rms that pass the strokes, the amplifiers' current or the gauges' range, or that no gauge sees for its steps.
+    """Find peaks of six rms beyond the strokes, the amplifiers' current or the gauges' range, or below every gauge's resolution.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -123,7 +123,7 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     for name, rms in zip(plan.actuators, currents, strict=True):
         if limit is not None and _PEAK * rms > limit:
             what = f"peaks of 6 x {rms:.4g} A rms pass the amplifier's {limit:.4g} A"
-            yield Finding(name, what, "Drive less, in a narrower band, or with a stronger amplifier")
+            yield Finding(name, what, "Reduce the drive, use a narrower band, or a stronger amplifier")
     yield from _gauge_findings(plan, chain)
 
 
@@ -132,10 +132,10 @@ def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     for name, unit, rms, span in zip(plan.gauges, plan.units, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
         if _PEAK * rms > 0.5 * span:
             what = f"peaks of 6 x {1e6 * rms:.4g} u{unit} rms pass half its range of {1e6 * span:.4g} u{unit}"
-            yield Finding(name, what, "Drive less, let it drift less, or take a gauge of larger range")
+            yield Finding(name, what, "Reduce the drive or the drift, or use a gauge of larger range")
     seen = np.hypot(chain.output_rms, walked)
     if np.all(_PEAK * seen < 0.5 * plan.steps):
         best = int(np.argmin(plan.steps / np.maximum(seen, 1e-300)))
         unit, within = plan.units[best], "and so at the others"
         what = f"peaks of 6 x {1e6 * seen[best]:.4g} u{unit} rms stay within half a step of {1e6 * plan.steps[best]:.4g} u{unit}, {within}"
-        yield Finding(plan.gauges[best], what, "Drive more, or take gauges of finer resolution: all readings would stand still")
+        yield Finding(plan.gauges[best], what, "Increase the drive, or use gauges of finer resolution: all readings would be constant")

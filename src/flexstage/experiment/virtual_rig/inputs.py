@@ -1,4 +1,4 @@
-"""Inputs of a virtual rig: the recorded quantity, and the signal it is taken from."""
+"""Recorded inputs of a virtual rig: quantity and signal."""
 
 from enum import Enum
 
@@ -9,13 +9,13 @@ class InputQuantity(Enum):
     STROKE = "stroke"
     """Free stroke in um."""
     VOLTAGE = "voltage"
-    """Voltage in V, counted from the bias."""
+    """Voltage in V, relative to the bias."""
 
 
 class InputSignal(Enum):
-    """Signal that the recorded inputs are taken from."""
+    """Source signal of the recorded inputs."""
 
     MONITOR = "monitor"
-    """Behind the amplifier and through the same filter as the gauges: amplifier and filter cancel in the frequency response."""
+    """After the amplifier and the gauges' filter: amplifier and filter cancel in the frequency response."""
     COMMAND = "command"
     """Before the amplifier, not filtered: amplifier and filter are part of the frequency response."""

@@ -1,4 +1,4 @@
-"""Random numbers by stream and block: any block of any stream, in any order, is always the same."""
+"""Random numbers by stream and block: reproducible for any block of any stream, in any order."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.base.stream import generator
 
 
 class Stream(IntEnum):
-    """What random numbers are for."""
+    """Random stream of a source kind."""
 
     DRIVE = 0
     GAUGE = 1
@@ -20,7 +20,7 @@ class Stream(IntEnum):
 
 
 def white(seed: int, stream: Stream, channel: int, block: int, size: int) -> Array:
-    """White Gaussian noise (size,) of unit variance: that block of that channel's stream. Blocks count from -1.
+    """Generate white Gaussian noise (size,) of unit variance for a block of a channel's stream. Blocks count from -1.
 
     >>> first = white(7, Stream.DRIVE, 0, 0, 3)
     >>> bool(np.all(first == white(7, Stream.DRIVE, 0, 0, 3))), bool(np.any(first == white(7, Stream.DRIVE, 1, 0, 3)))
@@ -30,9 +30,9 @@ def white(seed: int, stream: Stream, channel: int, block: int, size: int) -> Arr
 
 
 def walk(seed: int, channel: int, block: int, size: int) -> Array:
-    """That block (size,) of a random walk of unit steps which goes on from block to block.
+    """Generate a block (size,) of a random walk of unit steps, continuous over blocks.
 
-    The walk's values at the blocks' ends are drawn first, each block is the bridge between two of them: so no block needs the ones before.
+    The walk's values at the blocks' ends are drawn first, and each block is a Brownian bridge between them: blocks are independent.
 
     >>> steps = np.diff(np.concatenate([walk(7, 0, block, 1000) for block in range(4)]))
     >>> 0.9 < float(np.std(steps)) < 1.1, bool(np.max(np.abs(steps)) < 5.0)

@@ -1,4 +1,4 @@
-"""The parts of a virtual test looked up and settled: who is driven how far, what each gauge adds, which rate and band."""
+"""Plan of a virtual test with all defaults resolved: drive of each actuator, errors of each gauge, rate and band."""
 
 from __future__ import annotations
 
@@ -19,16 +19,15 @@ _DEFAULT_SHARE = 0.01
 _RATE_OVER_HIGHEST = 10.0
 _BAND_SHARE = 0.4
 TAPER = 0.25
-"""The drive's density falls to nought over this share of the upper end of its band."""
+"""Range of the density's decay to zero, relative to the upper end of the band."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A set-up with everything settled, by driven actuator (m,) and by single gauge (p,) with the `units` of its reading, SI.
+    """Resolved set-up, by driven actuator (m,) and by single gauge (p,) with the `units` of its reading, SI.
 
-    `rms` of the commanded free stroke, `low` and `high` end of the stroke; `bandwidths` of amplifiers (infinite: ideal), `lags` those of
-    gauges, `walks` what these drift in a minute; `volts` per metre of free stroke (NaN where the stack states no voltage); `highest`
-    platform mode [Hz].
+    `rms` of the commanded free stroke, `low` and `high` end of the stroke. `bandwidths` of amplifiers (infinite: ideal), `lags` of gauges,
+    `walks` their drift per minute. `volts` per metre of free stroke (NaN for a stack without voltage range). `highest` platform mode [Hz].
     """
 
     setup: RigSetup
@@ -58,7 +57,7 @@ class Plan:
 
 
 def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
-    """Settle a set-up whose numbers and names were checked.
+    """Resolve a checked set-up.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -101,7 +100,7 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
 
 
 def drivable_actuators(mechanism: Mechanism, model: LinearModel) -> tuple[str, ...]:
-    """Actuators that can be driven: strokes of the model that are piezo stacks.
+    """Find the actuators that can be driven: piezo stacks with stroke inputs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -113,7 +112,7 @@ def drivable_actuators(mechanism: Mechanism, model: LinearModel) -> tuple[str, .
 
 
 def volts_per_metre(piezo: ChargedActuator) -> float:
-    """Voltage per free stroke [V/m]: the range of voltage over the full stroke; NaN where no range is stated.
+    """Compute the voltage per free stroke [V/m]: the voltage range over the full stroke; NaN without a range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(volts_per_metre(stacks(double_triangle())["B4"]))
@@ -137,5 +136,5 @@ def _stated(values: list[Number | None], otherwise: float) -> Array:
 
 
 def _asked(value: float | None, metres: Array, stated: Array) -> Array:
-    """What a set-up asks of displacement gauges; of others what is stated."""
+    """Set-up values of displacement gauges; for others the design's."""
     return stated if value is None else np.where(metres, value, stated)

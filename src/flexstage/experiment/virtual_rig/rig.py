@@ -1,4 +1,4 @@
-"""The virtual test rig: any elastic model of a stage as the plant, and a record of it as a test would give."""
+"""Virtual test rig: simulated record of a stage with any elastic model as the plant."""
 
 from __future__ import annotations
 
@@ -22,17 +22,16 @@ _MICROMETRE = 1e6
 
 @check_arguments
 def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Record:
-    """The record of a virtual test: strokes or voltages in, gauges out, by name and with units.
+    """Simulate the record of a test: strokes or voltages in, gauges out, by name and with units.
 
-    `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` instead of the model's own. Each driven actuator has
-    band-limited Gaussian noise, through the amplifier 1/(1 + j f/f_a); gauges read the stage's motion through their own lag, with noise,
-    through the anti-alias filter, with drift, in steps. The test has run for long when the record begins. Strokes are free strokes around
-    the bias. The stage is taken as linear; its continuous response to the noise is exact, structural damping taken as equivalent modal
-    ratios (the record's name says so). Samples are computed where they are read, in blocks; the same
-    set-up gives the same samples.
+    `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` replaces the model's own. Each driven actuator has
+    band-limited Gaussian noise, through the amplifier 1/(1 + j f/f_a). Gauges read the stage's motion through their own lag, with noise,
+    through the anti-alias filter, with drift and quantisation. The record starts in the steady state. Strokes are free strokes around the
+    bias. The stage is linear, with an exact continuous response to the noise; structural damping is converted to equivalent modal ratios
+    (stated in the record's name). Samples are computed on demand, in blocks; equal set-ups give equal samples.
 
-    Raises `DesignError` with all findings: no time, no rate or one below twice the highest platform mode, unknown actuators, no gauges,
-    peaks beyond strokes, currents or gauge ranges.
+    Raises `DesignError` with all findings: invalid duration or rate, a rate below twice the highest platform mode, unknown actuators, no
+    gauges, peaks beyond strokes, currents or gauge ranges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -46,7 +45,7 @@ def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: D
 
 
 def simulate_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Simulated:
-    """The test behind a record of `rig`: its plan, its chain with the rms values to expect, and its samples. Raises as `rig` does.
+    """Prepare the test of a `rig` record: plan, chain with expected rms values, and samples. Raises as `rig`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -61,12 +60,12 @@ def simulate_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, 
     found = chain(model, plan, law)
     require(range_findings(plan, found))
     scale = plan.volts if setup.input_quantity is InputQuantity.VOLTAGE else np.full(len(plan.actuators), _MICROMETRE)
-    source = f"seed {setup.seed}; {found.note}; {mechanism.name or 'stage'}; {model.provenance}"  # forms cut names: what matters first
+    source = f"seed {setup.seed}; {found.note}; {mechanism.name or 'stage'}; {model.provenance}"  # truncated by formats: most important first
     return Simulated(plan, found, scale, _MICROMETRE, source)
 
 
 def as_record(test: Simulated) -> Record:
-    """The record of a simulated test.
+    """Convert to a record.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -1,4 +1,4 @@
-"""Samples of a virtual test, computed where they are read."""
+"""Samples of a virtual test, computed on demand."""
 
 from __future__ import annotations
 
@@ -16,10 +16,9 @@ _HELD = 2**24
 
 @dataclass(frozen=True, eq=False)
 class Simulated:
-    """Samples (n, inputs + outputs) in the record's units, computed in blocks; every block by itself, so that any can be read.
+    """Simulated samples (n, inputs + outputs) in the record's units, computed in independent blocks that can be read in any order.
 
-    `input_scale` (m,) and `output_scale` lead from metres to the record's units. Short records are kept once computed, of long ones the
-    last block.
+    `input_scale` (m,) and `output_scale` convert metres to the record's units. Short records are cached, of long ones the last block.
     """
 
     plan: Plan
@@ -36,11 +35,11 @@ class Simulated:
 
     @property
     def block(self) -> int:
-        """Samples a block."""
+        """Samples per block."""
         return self.chain.size // self.chain.finer
 
     def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded.
+        """Read samples `start` to `stop` (excluded).
 
         >>> from flexstage.cases.double_triangle import double_triangle
         >>> from flexstage.models.mapped import mapped
@@ -71,7 +70,7 @@ class Simulated:
         read = self._middle_block((chain.outputs @ drive[:, :, None])[:, :, 0])
         if np.any(plan.densities):
             read = read + self._middle_block(self._transforms(Stream.GAUGE, gauges, number) * chain.gauge)
-        if np.any(plan.walks):  # a step has the variance of a minute's over the samples of a minute
+        if np.any(plan.walks):  # variance per step: a minute's variance over its number of samples
             walks = [walk(plan.setup.seed, column, number, self.block) for column in range(gauges)]
             read = read + plan.walks / np.sqrt(60.0 * plan.rate) * np.stack(walks, axis=1)
         scaled, steps = read * self.output_scale, plan.steps * self.output_scale
@@ -86,6 +85,6 @@ class Simulated:
         return np.stack([np.fft.rfft(np.concatenate(each)) for each in every], axis=1)
 
     def _middle_block(self, spectra: Array) -> Array:
-        """The middle block of what transforms over three blocks stand for, at the sampling rate."""
+        """Middle block of the transforms over three blocks, at the sampling rate."""
         size = self.chain.size
         return np.fft.irfft(spectra, 3 * size, axis=0)[size : 2 * size : self.chain.finer]

@@ -1,4 +1,4 @@
-"""How a virtual test is set up: noise, amplifier, filter, gauges, clock. Light: the command line names the choices without loading more."""
+"""Set-up of a virtual test: noise, amplifier, filter, gauges, sampling. A light module: the command line lists its choices."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from flexstage.parts.amplifier import Amplifier
 
 @dataclass(frozen=True)
 class NoiseDrive(CheckedFields):
-    """Gaussian noise that drives the actuators, each its own.
+    """Independent Gaussian noise drive of the actuators.
 
-    `stroke` is the rms of the commanded free stroke [m], or `voltage` that of the command [V]; without either it is 1 % of each stack's
-    full stroke. The density is flat within `band` (low, high) [Hz] and falls to nought from `low` to `low`/2 and from `high` to 1.25 `high`
-    (absent: 0 to 0.4 times the sampling rate). `actuators` names those that are driven (absent: all); only they are recorded.
+    `stroke` is the rms of the commanded free stroke [m], or `voltage` the rms of the command [V]; default: 1 % of each stack's full stroke.
+    The density is constant within `band` (low, high) [Hz], and decays to zero from `low` to `low`/2 and from `high` to 1.25 `high`
+    (default: 0 to 0.4 times the sampling rate). `actuators` names the driven and recorded ones (default: all).
     """
 
     stroke: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
@@ -28,7 +28,7 @@ class NoiseDrive(CheckedFields):
 
 @dataclass(frozen=True)
 class AntiAlias(CheckedFields):
-    """Butterworth filter of every recorded analogue channel: `order` (0: none) and `corner` [Hz] (absent: 0.4 times the sampling rate)."""
+    """Anti-alias Butterworth filter of every analogue channel: `order` (0: none), `corner` [Hz] (default: 0.4 times the rate)."""
 
     order: int = 8
     corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
@@ -36,10 +36,10 @@ class AntiAlias(CheckedFields):
 
 @dataclass(frozen=True)
 class Sensing(CheckedFields):
-    """What gauges add: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
+    """Errors of gauges: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
 
-    Where absent, density and resolution are those each gauge of the design states (none stated: none). `drift` is a random walk, its
-    standard deviation after a minute [m]. They are those of displacement gauges: gauges of rotations have what they state, and no drift.
+    Default density and resolution are those of each gauge in the design. `drift` is a random walk, its standard deviation after a minute
+    [m]. The values apply to displacement gauges; rotation gauges keep the design's values, without drift.
     """
 
     density: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
@@ -49,11 +49,10 @@ class Sensing(CheckedFields):
 
 @dataclass(frozen=True)
 class RigSetup(CheckedFields):
-    """A test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; gauges are recorded `delay` [s] late.
+    """Virtual test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; gauges are recorded `delay` [s] late.
 
-    A test whose peaks ask for more than the amplifier's current is refused, since a saturated amplifier is not linear.
-    Without a rate it is the least power of two that is ten times the highest platform mode. The same set-up of the same stage gives
-    the same record, to the bit.
+    A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear. The default rate is the lowest
+    power of two of at least ten times the highest platform mode. Equal set-ups of equal stages give bit-identical records.
 
     >>> RigSetup(seconds=10.0).filter.order
     8

@@ -9,7 +9,7 @@ from flexstage.show.table import Cell, Mark, Table, make_table
 
 
 def rig_table(test: Simulated) -> Table:
-    """The channels of a virtual test with their units, the rms to expect of each, and steps of the gauges.
+    """Tabulate the channels of a virtual test with their units, expected rms values, and steps of the gauges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -1,4 +1,4 @@
-"""How late all outputs together come: the pure delay of a test's converters and filters, told by the phase of the modes' residues."""
+"""Common delay of all outputs: the pure delay of a test's converters and filters, from the phase of the modal residues."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _TURNED, _BESIDE = 0.05, 24.0
 
 @dataclass(frozen=True)
 class Delay:
-    """How much later [s] outputs come than the modes alone would have it, with its standard deviation."""
+    """Delay [s] of the outputs relative to the modes, with its standard deviation."""
 
     value: float
     deviation: float
@@ -33,7 +33,7 @@ class Delay:
 
 @dataclass(frozen=True)
 class _Single:
-    """A channel by its place among the inputs or the outputs."""
+    """Single channel, by its index among the inputs or the outputs."""
 
     role: Role
     number: int
@@ -41,7 +41,7 @@ class _Single:
 
 @dataclass(frozen=True)
 class _Residue:
-    """Of a group: residues' mean `square` over their mean power (1 where all are imaginary), mean `pole`, `spread` of their phase."""
+    """Residues of a group: mean `square` over mean power (1 if all are imaginary), mean `pole`, `spread` of the phase."""
 
     square: complex
     pole: complex
@@ -49,13 +49,12 @@ class _Residue:
 
 
 def common_delay(found: Identified) -> Delay | None:
-    """The delay that makes the modes those of a stage whose damping is proportional: shapes and participations all in phase or opposite.
+    """Estimate the delay that makes the modes those of a proportionally damped stage: shapes and participations in phase or opposite.
 
-    A mode's residue R in H = R/(s - p) + ... is imaginary then (real where a velocity is read; Heylen, Lammens & Sas, Modal Analysis
-    Theory and Testing, 1997, A.1), and e^{-p tau} times that with a delay: the phase falls with frequency. Lags and filters that turn
-    phase alike count as delay. Signs of residues are unknown, so three modes determine delays up to 3 periods of the lowest, fewer up to
-    0.45; of delays that explain the phases equally well the shortest is returned. `None` where no delay makes the residues imaginary, or
-    where it does not differ from zero significantly.
+    A mode's residue R in H = R/(s - p) + ... is then imaginary (real for a velocity; Heylen, Lammens & Sas, Modal Analysis Theory and
+    Testing, 1997, A.1), and multiplied by e^{-p tau} with a delay: the phase falls with frequency. Lags and filters with equal phase count
+    as delay. Signs of residues are unknown: three modes determine delays up to 3 periods of the lowest, fewer up to 0.45. Among equally
+    good delays the shortest is returned. `None` if no delay makes the residues imaginary, or if it is not significant.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -69,11 +68,12 @@ def common_delay(found: Identified) -> Delay | None:
 
 
 def late_channels(found: Identified) -> Iterator[str]:
-    """Single channels that come later than the others of their side: what would make their part in the modes that of a real stage.
+    """Find single channels with more delay than the others of their side, which would make their part in the modes real.
 
-    Each channel's residues have a delay of their own, by three modes or more; it is named where it is 6 deviations from the others'
-    median and turns the highest mode by a tenth of a turn or more, and the others agree. Residues must be less real by as much at the
-    median: half-turns of all modes in which a channel moves are changes of sign, not delays.
+    Each channel's residues have an individual delay, from three modes or more. It is reported if it differs by 6 deviations from the
+    others' median, and rotates the highest mode by a tenth of a turn or more, while the others agree. Residues must be less real by as much
+    at the
+    median: half turns of all modes with motion of a channel are changes of sign, not delays.
     """
     if len(_groups(found)) < _ENOUGH:
         return
@@ -93,15 +93,15 @@ def late_channels(found: Identified) -> Iterator[str]:
             for channel, by, _ in late:
                 word = "late" if by > 0.0 else "early"
                 yield (
-                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms against the other {role.value}s: with that taken out, its part "
+                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms against the other {role.value}s: after correction, its part "
                     f"in the modes is in phase with theirs."
                 )
 
 
 def _fit_delay(found: Identified, channel: _Single | None, near: float = 0.0, least: float = _SURE) -> Delay | None:
-    """The delay of the residues, all or those of one channel; `None` where it is not `least` deviations from zero.
+    """Delay of the residues, of all or of one channel; `None` if less than `least` deviations from zero.
 
-    Of delays that explain the phases equally well, the one nearest to `near` [s]: signs are free, half-turns explain nothing.
+    Among equally good delays, the one nearest to `near` [s]: signs are free, half turns are no evidence.
     """
     terms = [_residue(found, group, channel) for group in _groups(found)] if len(found.frequencies) else []
     if not terms:
@@ -135,13 +135,13 @@ def _fit_delay(found: Identified, channel: _Single | None, near: float = 0.0, le
 
 
 def bends_modes(found: Identified, delay: Delay) -> bool:
-    """Whether a delay turns phase within a mode's band by so much (0.05 rad) that modes without it do not fit."""
+    """Whether a delay rotates the phase within a mode's band enough (0.05 rad) to impair the fit."""
     widths = found.frequencies * found.damping
     return bool(2.0 * np.pi * delay.value * _BESIDE * float(np.max(widths)) > _TURNED)
 
 
 def take_out_delay(known: Evidence, seconds: float) -> Evidence:
-    """The evidence with outputs as much earlier: multiplied by e^{j omega tau}, line by line."""
+    """Return the evidence with outputs advanced: multiplied by e^{j omega tau}, line by line."""
 
     def lines(number: int = 0, parts: int = 1) -> Iterable[Lines]:
         for each in known.lines(number, parts):
@@ -157,13 +157,13 @@ def _turn(frequencies: Array, seconds: float) -> Array:
 
 
 def _groups(found: Identified) -> list[tuple[int, ...]]:
-    """Modes that lie too close to be told apart together, each other by itself."""
+    """Indistinguishable close modes together, each other individually."""
     together = set(chain.from_iterable(found.close))
     return [*found.close, *((index,) for index in range(len(found.frequencies)) if index not in together)]
 
 
 def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None) -> _Residue:
-    """All residues of a group, or those of one channel, whose phase is less sure where it has little of the mode."""
+    """Residues of a group, or of one channel, with higher phase uncertainty for a small part in the mode."""
     chosen = list(group)
     pole = complex(np.mean(found.poles[chosen]))
     rates, driven = _rates(found.outputs, pole), _rates(found.inputs, pole)
@@ -179,12 +179,12 @@ def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None)
 
 
 def _rates(channels: tuple[Channel, ...], pole: complex) -> Array:
-    """Velocities or accelerations of a free decay over its motions, up to a positive factor: (p/|p|)^n; 1 for all else."""
+    """Velocities or accelerations of a free decay over its motions, up to a positive factor: (p/|p|)^n; 1 for others."""
     return np.array([(pole / abs(pole)) ** _derivative(channel.unit) for channel in channels])
 
 
 def _derivative(unit: str) -> int:
-    """Order of the derivative of a motion that is measured: 1 for velocities, 2 for accelerations, 0 for all else."""
+    """Order of the measured derivative of a motion: 1 for velocities, 2 for accelerations, 0 for others."""
     if not unit or unit_problem(unit) is not None:
         return 0
     units = (("m/s", "rad/s"), ("m/s^2", "rad/s^2"))

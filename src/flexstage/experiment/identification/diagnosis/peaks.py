@@ -1,4 +1,4 @@
-"""Peaks that are seen and are no modes yet: what they may be, and what it would take."""
+"""Peaks that are not confirmed as modes: possible causes, and required data."""
 
 from __future__ import annotations
 
@@ -30,29 +30,29 @@ _MOST = 20
 
 
 class Doubt(Enum):
-    """Why a peak is not called a mode."""
+    """Reason why a peak is not a mode."""
 
     TONE = "tone"
-    """A sinusoid in outputs that no input holds: taken out."""
+    """Sinusoid in outputs, absent from the inputs: removed."""
     UNDRIVEN = "not driven"
-    """A resonance that the recorded inputs do not drive: something else does."""
+    """Resonance without excitation by the recorded inputs."""
     WEAK = "weak"
-    """A resonance that noise might be."""
+    """Resonance that noise could cause."""
     UNSURE = "unsure"
-    """A resonance in outputs alone whose width does not differ from zero as surely as a mode's must."""
+    """Resonance in outputs alone whose width is not significantly different from zero."""
     FREE = "free"
-    """An oscillation that was seen to fade, but by too little to tell its damping, nor whether an input began it."""
+    """Free oscillation with too little decay to determine its damping, or its excitation by an input."""
     NARROW = "narrow"
-    """One line that stands out of its neighbours: there are no lines to tell a resonance from a tone."""
+    """Single prominent line: too few lines to distinguish a resonance from a tone."""
 
 
 @dataclass(frozen=True)
 class Peak:
-    """A peak at `frequency` in Hz, `width` Hz wide at half power (absent: no wider than a line).
+    """Peak at `frequency` in Hz, `width` Hz wide at half power (absent: at most a line).
 
-    It is seen in the `outputs`, whose lines are `resolution` Hz apart. `chance` is how likely there would be as much without a mode: noise
-    as pure as a tone, or as strong as a weak peak or a narrow one; inputs that explain as much of an undriven one. Modes need 1e-9, and
-    lines within their width.
+    Present in the `outputs`, with lines `resolution` Hz apart. `chance` is the probability of such a peak without a mode: noise with the
+    purity of a tone, or the strength of a weak or narrow peak; inputs that explain as much of an undriven one. Modes need 1e-9, and lines
+    within their width.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -70,28 +70,28 @@ class Peak:
 
     @property
     def reason(self) -> Annotated[str, VIEW]:
-        """Why it is no mode, in words.
+        """Reason why it is not a mode.
 
         >>> Peak(120.0, Doubt.NARROW, 1e-6, None, 0.3125, ("y",)).reason
         'one line, 0.3125 Hz from the next: a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
         """
         if self.doubt is Doubt.TONE:
-            return f"a tone that no input holds{_mains(self)}, or an oscillation that does not fade in the record. It is taken out."
+            return f"a tone absent from the inputs{_mains(self)}, or an oscillation without decay in the record. It is removed."
         if self.doubt is Doubt.FREE:
-            return "an oscillation left to itself that fades too little in the record to tell its damping. Record longer."
+            return "a free oscillation with too little decay in the record to determine its damping. Record longer."
         if self.doubt is Doubt.UNDRIVEN:
-            return "the recorded inputs do not drive it: another force does, or an unsteady tone. Record what else shakes the stage."
+            return "the recorded inputs do not drive it: an unrecorded force does, or an unsteady tone. Record all excitation of the stage."
         if self.doubt is Doubt.UNSURE:
-            return "its damping is not determined surely enough: noise or a neighbour might make it. Record longer."
+            return "its damping is too uncertain: noise or a neighbouring mode could cause it. Record longer."
         if self.doubt is Doubt.WEAK:
-            return "noise might be as strong. Record longer, or drive more."
+            return "noise could be as strong. Record longer, or increase the drive."
         lines = f"one line, {self.resolution:.4g} Hz from the next"
         return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
 
 
 @dataclass(frozen=True, eq=False)
 class Left:
-    """What modes at `poles` (k,) in Hz leave of responses, `rest` (f, p, m), at `lines` (f,) in Hz."""
+    """Residual responses, `rest` (f, p, m), after modes at `poles` (k,) in Hz, at `lines` (f,) in Hz."""
 
     lines: Array
     rest: Array
@@ -99,10 +99,10 @@ class Left:
 
 
 def peaks(known: Evidence, left: Left, refused: Sequence[Lost], lost: Sequence[Lost]) -> tuple[Peak, ...]:
-    """All that is seen and is no mode, by rising frequency.
+    """List all peaks that are not modes, by ascending frequency.
 
-    Tones taken out; resonances `refused` for they are not driven; those `lost` for noise might be as strong, where it would be in one of a
-    thousand tries at most; single lines of stored responses (in records those are tones, or none).
+    Includes removed tones; resonances `refused` for lack of excitation; resonances `lost` because noise is as strong in one of a thousand
+    trials at most; and single lines of stored responses (in records those are tones, or none).
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -128,7 +128,7 @@ def peaks(known: Evidence, left: Left, refused: Sequence[Lost], lost: Sequence[L
 
 
 def _is_listed(pole: complex, poles: Iterable[complex], found: Sequence[Peak], step: float) -> bool:
-    """Whether it lies within four half-widths, or three lines, of a mode or a peak that is listed."""
+    """Whether it lies within four half-widths, or three lines, of a listed mode or peak."""
     reach = max(-_WIDTHS * pole.real, 3.0 * step)
     return any(abs(pole.imag - abs(each)) < max(reach, -_WIDTHS * each.real) for each in poles) or any(
         abs(pole.imag - each.frequency) < max(reach, 0.5 * _WIDTHS * (each.width or 0.0)) for each in found
@@ -136,7 +136,7 @@ def _is_listed(pole: complex, poles: Iterable[complex], found: Sequence[Peak], s
 
 
 def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Channel], size: Array) -> list[Peak]:
-    """Tones taken out of records, those nearer than a line together, with the outputs that hold most, beside their rms `size` (p,).
+    """List tones removed from records, with near ones merged, and their dominant outputs; `size` (p,) is the rms.
 
     >>> outputs = (Channel("S1"), Channel("S2"))
     >>> hums = [Tone(50.0 + 1e-4 * each, np.array([0.3, 1e-6]), 0, 1000, 1e-12) for each in range(2)]
@@ -163,11 +163,11 @@ def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Chann
 
 
 def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
-    """Single lines of what modes leave of responses that stand out of their neighbours.
+    """List prominent single lines of the residual responses.
 
-    Each line is held against a cubic through its neighbours from the 2nd to the 12th on both sides, the variance being what that leaves
-    (an F-test); it stands out if one of twenty such data sets would show any by chance. Lines within four half-widths of a mode, or three
-    lines, belong to it. Lines that lie unevenly have no such neighbours.
+    Each line is compared with a cubic through its neighbours from the 2nd to the 12th on both sides, with the variance of their residual
+    (an F-test). It is prominent at a false-alarm rate of one in twenty data sets. Lines within four half-widths of a mode, or three lines,
+    belong to it. Unevenly spaced lines have no such neighbours.
 
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
     >>> rest = noise[0] + 1j * noise[1] + 30.0 * (lines == 60.0)[:, None, None]
@@ -194,7 +194,7 @@ def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
 
 
 def _prominence(rest: Array) -> Array:
-    """Squared distance of every line (f, p, m) from the cubic through its neighbours, over its variance; nought at the ends."""
+    """Squared distance of every line (f, p, m) from the cubic through its neighbours, over its variance; zero at the ends."""
     offsets = np.r_[-_REACH:-1, 2 : _REACH + 1]
     basis, _ = np.linalg.qr(np.vander(offsets / _REACH, 4, increasing=True))
     at_nought = np.linalg.lstsq(np.vander(offsets / _REACH, 4, increasing=True), basis, rcond=None)[0][0]
@@ -216,7 +216,7 @@ def _names(outputs: Sequence[Channel], chosen: Array) -> tuple[str, ...]:
 
 
 def _mains(peak: Peak) -> str:
-    """Whether the peak is at a multiple of the mains' frequency, within half a line or a part in a thousand."""
+    """Whether the peak is at a multiple of the mains frequency, within half a line or a part in a thousand."""
     for mains in _MAINS:
         times = round(peak.frequency / mains)
         within = max(min(0.5 * peak.resolution, 1.0), 1e-3 * peak.frequency)

@@ -1,4 +1,4 @@
-"""What the data hold beyond the modes found: where, and the mode that would explain it."""
+"""Data unexplained by the identified modes: frequency of the excess, and a mode that would explain it."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.likelihood import Band, Modal, explained_share, with_shapes
 
 SURPRISING = 8.0
-"""Standard deviations of the excess above which it is not chance."""
+"""Significant excess in standard deviations."""
 _TERMS = 2
 _WIDTHS = 1.0
 
 
 def excess(band: Band, modal: Modal) -> Array:
-    """How far (c,) the chi-square of what is left in each cell exceeds chance, in standard deviations.
+    """Compute the excess of the residual chi-squared in each cell (c,), in standard deviations.
 
-    What is left is fitted anew in every cell, by responses constant and linear in frequency: with noise alone the outputs' powers so
-    explained, over the noise's, have mean and variance of the number of complex parameters.
+    The residual is fitted in every cell by responses constant and linear in frequency. For pure noise the explained output powers, over the
+    noise's, have a mean and variance equal to the number of complex parameters.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -37,7 +37,7 @@ def excess(band: Band, modal: Modal) -> Array:
 
 
 def suggest_mode(band: Band, modal: Modal, cell: int) -> Modal:
-    """The modes and one more, begun from what is left in that cell: its strongest participation there.
+    """Propose an additional mode from the residual in that cell, starting from its strongest participation there.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -64,7 +64,7 @@ def suggest_mode(band: Band, modal: Modal, cell: int) -> Modal:
 
 
 def _residual_sums(band: Band, chosen: Array, inside: Array) -> tuple[Array, Array]:
-    """Gram matrices (c, q, q) of the lowest two polynomials times the drive, and their products (c, q, p) with what is left."""
+    """Gram matrices (c, q, q) of the lowest two polynomials times the drive, and their products (c, q, p) with the residual."""
     cells = band.cells
     own, cross = cells.own[chosen], cells.cross[chosen]
     rest = cross - np.einsum("canbm,ocbm->cano", own, inside, optimize=True)

@@ -1,1 +1,1 @@
-"""Modes from outputs without recorded inputs."""
+"""Output-only modal identification."""

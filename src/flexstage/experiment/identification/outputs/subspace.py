@@ -1,4 +1,4 @@
-"""Modes from outputs alone: covariance-driven stochastic subspaces, band by band, with deviations from blocks of the record."""
+"""Output-only modes by covariance-driven stochastic subspace identification, band by band, with deviations from blocks of the record."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 BLOCKS = 40
-"""Into how many blocks a record is divided: their scatter gives the intervals."""
+"""Number of blocks of a record; their scatter gives the intervals."""
 _TAPER, _SKIPPED = 0.15, 2
 _ROWS, _LONGEST, _LARGEST, _SIZE = 8, 48, 240, 36
 _FADED = 0.08
@@ -31,9 +31,9 @@ _SINGULAR = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
-    """A mode of a stage that the floor shakes: `pole` in Hz (rad/s over 2 pi), its `shape` (p,), largest component 1.
+    """Mode of a stage under floor excitation: `pole` in Hz (rad/s over 2 pi), its `shape` (p,), largest component 1.
 
-    `width_deviation` and `deviation` are those of the pole's real and imaginary part, `shape_deviation` (p,) those of the shape.
+    `width_deviation` and `deviation` belong to the pole's real and imaginary part, `shape_deviation` (p,) to the shape.
     """
 
     pole: complex
@@ -45,9 +45,9 @@ class Shaken:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Covariances of a band: by block (b, lags, p, p) at steps of `step` s, turning with `low` Hz less; the part searched is `sweep`.
+    """Covariances of a band: by block (b, lags, p, p) at steps of `step` s, shifted down by `low` Hz; the searched part is `sweep`.
 
-    Outputs are times `scale` (p,).
+    Outputs are multiplied by `scale` (p,).
     """
 
     covariances: Array
@@ -58,11 +58,11 @@ class Band:
 
 
 def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band], Responses]:
-    """Output covariances of all bands between `low` and `high` in Hz, block by block; and the outputs' amplitude density, unit/Hz^0.5.
+    """Compute output covariances of all bands from `low` to `high` in Hz, by block; and the outputs' amplitude density, unit/Hz^0.5.
 
-    Each block is transformed; products of its lines within a band, tapered towards the band's ends, give by an inverse transform
-    R(l) = E[y(n + l) y(n)^H] of the band alone, as if it had been mixed down and sampled at its width; R is divided by 1 - l/N, the share
-    of the block that lag l leaves. Outputs are over their root mean squares. The floor's density needs to be smooth within a band only.
+    Each block is transformed. Products of its lines within a band, tapered at the ends, give R(l) = E[y(n + l) y(n)^H] of that band by
+    inverse transform, equivalent to mixing and decimation. R is divided by 1 - l/N, the share of the block at lag l. Outputs are divided by
+    their root mean squares. The floor's density must be smooth only within a band.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
@@ -89,9 +89,9 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band
 
 
 def searched_from(low: float, high: float, *, outputs: int, resolution: float) -> float:
-    """The frequency in Hz from which bands between `low` and `high` hold twice the lines that the fewest block rows take; none: infinite.
+    """Compute the lowest frequency in Hz at which bands from `low` to `high` have twice the lines of the minimum block rows; else infinite.
 
-    Covariances of N lines repeat after N lags. `resolution` [Hz] is that of a block.
+    Covariances of N lines repeat after N lags. `resolution` [Hz] belongs to a block.
 
     >>> round(searched_from(0.1, 100.0, outputs=6, resolution=0.02), 1), searched_from(50.0, 50.1, outputs=6, resolution=1.0)
     (1.4, inf)
@@ -102,7 +102,7 @@ def searched_from(low: float, high: float, *, outputs: int, resolution: float) -
 
 
 def _divide(low: float, high: float) -> list[Sweep]:
-    """Bands between powers of 1.4 Hz, whatever is searched, read two fifths of their width further on both sides."""
+    """Bands between powers of 1.4 Hz, independent of the searched range, extended by two fifths of their width on both sides."""
     first, last = (np.log(each) / np.log(_RATIO) for each in (low, high))
     limits = _RATIO ** np.arange(np.floor(first), np.ceil(last) + 1.0)
     return [
@@ -113,18 +113,18 @@ def _divide(low: float, high: float) -> list[Sweep]:
 
 
 def _rows(outputs: int, damping: float) -> int:
-    """Block rows: as many as it takes for a mode to fade to a half or so, and for as many poles as are tried."""
+    """Number of block rows: enough for a mode to decay to about a half, and for the number of poles tried."""
     return int(np.clip(np.ceil(_FADED / damping), max(_ROWS, _SIZE // outputs), max(_SIZE // outputs, min(_LONGEST, _LARGEST // outputs))))
 
 
 def _lines(sweep: Sweep, resolution: float, count: int) -> tuple[int, int]:
-    """First and last line of a band; one that would end beyond the last line of all begins lower instead."""
+    """First and last line of a band, shifted down if it would exceed the last line."""
     first, last = int(sweep.low / resolution), int(np.ceil(sweep.high / resolution))
     return max(1, first - max(0, last - count)), min(count, last)
 
 
 def _covariances(inside: Array, lags: int) -> Array:
-    """Of a band by lags, its ends tapered and laid over one another: white noise stays white, its covariances vanish at all lags but 0."""
+    """Covariances of a band by lag, with tapered and folded ends: white noise stays white, with zero covariance at nonzero lags."""
     count, step = len(inside), _folded(len(inside))
     taper = np.minimum(np.minimum(np.arange(count) + 0.5, count - 0.5 - np.arange(count)) / (count - step), 1.0)
     power = inside[:, :, None] * np.conj(inside[:, None, :]) * (np.sin(0.5 * np.pi * taper) ** 2)[:, None, None]
@@ -134,12 +134,12 @@ def _covariances(inside: Array, lags: int) -> Array:
 
 
 def _folded(count: int) -> int:
-    """How many of a band's lines the taper leaves."""
+    """Number of a band's lines after tapering."""
     return count - int(_TAPER * count)
 
 
 def hankel(covariances: Array, rows: int, first: int) -> Array:
-    """The block Hankel matrix (rows p, rows p) of covariances (lags, p, p) from lag `first` on.
+    """Assemble the block Hankel matrix (rows p, rows p) of covariances (lags, p, p) from lag `first`.
 
     >>> hankel(np.arange(4.0)[:, None, None], 2, 1).tolist()
     [[1.0, 2.0], [2.0, 3.0]]
@@ -150,7 +150,7 @@ def hankel(covariances: Array, rows: int, first: int) -> Array:
 
 
 def _roots(covariances: Array, rows: int) -> tuple[Array, Array]:
-    """W and its inverse, W T W = 1 for the block Toeplitz matrix T (rows p, rows p) of covariances R(i - j)."""
+    """Matrix W and its inverse, W T W = 1 for the block Toeplitz matrix T (rows p, rows p) of covariances R(i - j)."""
     outputs = covariances.shape[1]
     both = np.concatenate([np.conj(covariances[rows - 1 : 0 : -1]).swapaxes(1, 2), covariances[:rows]])
     places = rows - 1 + np.arange(rows)[:, None] - np.arange(rows)
@@ -161,14 +161,14 @@ def _roots(covariances: Array, rows: int) -> tuple[Array, Array]:
 
 
 def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
-    """The modes of a band, and the stabilisation diagram: H = O Z of rising order, poles by O(shifted) = O A.
+    """Identify the modes of a band, with the stabilisation diagram: H = O Z of increasing order, poles by O(shifted) = O A.
 
-    H is weighted with the roots of the covariances of what comes and what went, W H V, so that its singular values are canonical
-    correlations: what the floor hardly drives weighs as much as what it drives most. Van Overschee & De Moor, Subspace Identification for
+    H is weighted with the roots of the future and past covariances, W H V, so that its singular values are canonical
+    correlations: weakly excited modes have the same weight as strongly excited ones. Van Overschee & De Moor, Subspace Identification for
     Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855. The equations are projected onto the signal subspace of the whole
-    record, U^H W H(shifted) V = Lambda U^H W H V, and perturbed to first order by what each block has of covariances (Doehler & Mevel, MSSP
-    38 (2013) 346), blocks taken as independent. In low orders
-    tails of modes beyond the band bend the modes, in high ones poles mix with them: each mode is of its own order (`_select_order`).
+    record, U^H W H(shifted) V = Lambda U^H W H V. They are perturbed to first order by the covariances of independent blocks (Doehler &
+    Mevel, MSSP 38 (2013) 346). Low orders are biased by modes outside the band, high ones by spurious poles: each mode has its own order
+    (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)
@@ -205,7 +205,7 @@ def _poles(band: Band, observability: Array, order: int, outputs: int) -> Poles:
 
 @dataclass(frozen=True, eq=False)
 class _Estimate:
-    """A mode of one order: `pole` in Hz, `shape` (p,) of any size, and what the blocks' covariances change of them, (b,) and (b, p)."""
+    """Mode at one order: `pole` in Hz, `shape` (p,) of any scale, and their changes by the blocks' covariances, (b,) and (b, p)."""
 
     pole: complex
     shape: Array
@@ -224,7 +224,7 @@ class _Estimate:
 
 
 def _perturbed(band: Band, left: Array, right: Array, candidates: Sequence[Candidate]) -> list[Shaken]:
-    """The candidates as modes: each of the order at which it is known best."""
+    """Candidates as modes, each at its order of lowest error."""
     rows = len(left) // band.covariances.shape[2]
     blocks = [(hankel(each, rows, _SKIPPED) @ right, hankel(each, rows, _SKIPPED + 1) @ right) for each in band.covariances]
     orders = [_of_order(band, left[:, :order], [(a[:, :order], b[:, :order]) for a, b in blocks], candidates) for order in _orders(left)]
@@ -237,7 +237,7 @@ def _orders(left: Array) -> range:
 
 
 def _of_order(band: Band, left: Array, blocks: Sequence[tuple[Array, Array]], candidates: Sequence[Candidate]) -> dict[int, _Estimate]:
-    """The candidates, by their numbers, that are poles of the equations projected onto `left`, perturbed by each of the blocks."""
+    """Candidates, by index, that are poles of the equations projected onto `left`, perturbed by each of the blocks."""
     outputs = band.covariances.shape[2]
     own, shifted = (np.mean([each[index] for each in blocks], axis=0) for index in range(2))
     inner = np.conj(left.T) @ own
@@ -258,7 +258,7 @@ def _of_order(band: Band, left: Array, blocks: Sequence[tuple[Array, Array]], ca
 
 
 def _select_order(track: Sequence[_Estimate]) -> Shaken:
-    """The mode of the order, of rising ones, whose variance and squared bias are least, by what higher orders say of the bias."""
+    """Mode at the order, ascending, of lowest variance plus squared bias, with the bias from higher orders."""
     chosen = int(np.argmin([np.sum(_risk(index, [each.poles() for each in track])[0]) for index in range(len(track))]))
     width, deviation = np.sqrt(np.sum(_risk(chosen, [each.poles() for each in track]), axis=0))
     best = track[chosen]
@@ -268,11 +268,12 @@ def _select_order(track: Sequence[_Estimate]) -> Shaken:
 
 
 def _risk(index: int, track: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
-    """Of values (q,) of one order: variance and squared bias by what higher orders say, and the square of a bias that chance may hide.
+    """Risk of values (q,) at one order: variance, squared bias from higher orders, and the square of an undetected bias.
 
-    Of values v_i and block changes of all orders: the largest |v_i - v_j|^2 - (2 sigma_ij)^2 of orders j above i is the squared bias
-    (Goldenshluger & Lepski, Ann. Statist. 39 (2011) 1608), with sigma_ij the deviation of the difference. What is less may be chance or
-    bias: it counts as uniformly distributed, on the average of orders that are not thrice less certain.
+    For values v_i and block changes of all orders, the largest |v_i - v_j|^2 - (2 sigma_ij)^2 of orders j above i is the squared bias
+    (Goldenshluger & Lepski, Ann. Statist. 39 (2011) 1608), with sigma_ij the deviation of the difference. A smaller difference may be
+    chance or
+    bias: it counts as uniformly distributed, averaged over orders with at most three times the uncertainty.
     """
     value, changes = track[index]
     own = _deviation(changes)
@@ -287,7 +288,7 @@ def _risk(index: int, track: Sequence[tuple[Array, Array]]) -> tuple[Array, Arra
 
 
 def _matches(poles: Array, candidates: Sequence[Candidate]) -> dict[int, int]:
-    """Which pole is each candidate, by its number: the nearest that no other is, within two half-widths."""
+    """Pole of each candidate, by index: the nearest unassigned one within two half-widths."""
     found: dict[int, int] = {}
     for number, candidate in enumerate(candidates):
         away = np.abs(poles - candidate.pole)
@@ -300,7 +301,7 @@ def _matches(poles: Array, candidates: Sequence[Candidate]) -> dict[int, int]:
 def _deviation(changes: Array) -> Array:
     """Standard deviation of the mean of independent blocks' changes (b, ...).
 
-    Times Student's t over the normal's 1.96, so that 1.96 of them are half a 95 % interval.
+    Times Student's t over the normal's 1.96, so that 1.96 deviations are half a 95 % interval.
     """
     blocks = len(changes)
     spread = np.sqrt(np.sum((changes - np.mean(changes, axis=0)) ** 2, axis=0) / (blocks * (blocks - 1.0)))

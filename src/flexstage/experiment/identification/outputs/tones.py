@@ -1,4 +1,4 @@
-"""Tones in outputs that no input holds, the mains' or a pump's: found by Thomson's test, and taken out of records."""
+"""Tones in outputs but not in inputs, from mains or pumps: detected by Thomson's test, and removed from records."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ _DEGREE, _CLOSE = 2, 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Tone:
-    """A sinusoid of constant `frequency` in Hz in samples `start` to `stop`: 2 Re(a exp(2 pi j f t)), t from `start` on.
+    """Sinusoid of constant `frequency` in Hz in samples `start` to `stop`: 2 Re(a exp(2 pi j f t)), t from `start`.
 
-    `amplitudes` (p,) are those a of the outputs, nought where it is not seen; `chance` is how likely noise would be as pure;
-    `fades` the share of it that fades from begin to end: then it is an oscillation left to itself, and stays in the record.
+    `amplitudes` (p,) are a for the outputs, zero if absent. `chance` is the probability of noise of that purity. `fades` is the share that
+    decays from start to end: a free oscillation, which stays in the record.
     """
 
     frequency: float
@@ -41,7 +41,7 @@ class Tone:
 
 
 def steady_tones(tones: Iterable[Tone]) -> tuple[Tone, ...]:
-    """Those that do not fade.
+    """Tones without decay.
 
     >>> len(steady_tones([Tone(1.0, np.ones(1), 0, 8), Tone(2.0, np.ones(1), 0, 8, fades=0.2)]))
     1
@@ -50,7 +50,7 @@ def steady_tones(tones: Iterable[Tone]) -> tuple[Tone, ...]:
 
 
 def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, ...], rate: float) -> Samples:
-    """Other samples less tones in the channels of the numbers `columns`, sampled at `rate`.
+    """Samples without the tones in the channels with indices `columns`, sampled at `rate`.
 
     >>> from flexstage.experiment.records.record import InMemory
     >>> hum = Tone(0.25, np.array([0.5]), 0, 4)
@@ -74,13 +74,13 @@ def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, .
 
 
 def remove_tones(record: Record) -> tuple[Record, tuple[Tone, ...]]:
-    """The record without steady tones in its outputs, and all tones seen.
+    """Remove steady tones from the outputs of a record, and return all tones.
 
-    A tone is a line of what the inputs do not explain that stands eight times above those around it, and that by Thomson's harmonic F-test
-    (Thomson, Proc. IEEE 70 (1982) 1055, 13; with sine tapers, Riedel & Sidorenko 1995) is a sinusoid of constant amplitude and phase, which
-    neither noise nor a resonance that noise drives would be once in 1e9. One that the same test sees in an input is none from outside. One
-    that fades by more than five deviations is an oscillation left to itself: it stays. A resonance that does not fade within the record is
-    a tone too: no record tells them apart.
+    A tone is a line of the unexplained output that exceeds its surroundings eightfold and passes Thomson's harmonic F-test (Thomson, Proc.
+    IEEE 70 (1982) 1055, 13; with sine tapers, Riedel & Sidorenko 1995): a sinusoid of constant amplitude and phase, at a false-alarm rate
+    of 1e-9 for noise and noise-excited resonances. A tone also found in an input is not removed. A tone with a decay of more than five
+    deviations is a free oscillation, and stays. A resonance without decay within the record also counts as a tone: no record can
+    distinguish them.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.records.record import InMemory
@@ -122,7 +122,7 @@ def _tones_of_block(record: Record, inputs: tuple[int, ...], outputs: tuple[int,
 
 
 def _block_tones(lines: Array, inputs: int) -> Iterator[Tone]:
-    """Tones that outputs hold and inputs do not, their frequencies in lines."""
+    """Tones in outputs but not in inputs, with frequencies in lines."""
     for line in _prominent_lines(_unexplained_power(lines, inputs)):
         half = min(_HALF, line, len(lines) - 1 - line)
         if half < _LEAST:
@@ -144,14 +144,14 @@ def _block_tones(lines: Array, inputs: int) -> Iterator[Tone]:
 
 
 def _is_in_inputs(power: Array) -> bool:
-    """Whether the middle of powers (f, m) of inputs stands out in one of them: they are made of tones themselves."""
+    """Whether the middle of powers (f, m) is prominent in an input that consists of tones."""
     middle = len(power) // 2
     level = np.median(power, axis=0) / np.log(2.0)
     return bool(np.any(np.max(power[middle - 1 : middle + 2], axis=0) > _HELD * level))
 
 
 def _unexplained_power(lines: Array, inputs: int) -> Array:
-    """Powers (f, p) of what inputs do not explain of outputs, in stretches of lines by a local polynomial each."""
+    """Powers (f, p) of the outputs unexplained by inputs, by a local polynomial for each interval of lines."""
     count = len(lines) // (2 * _HALF)
     if count < 1:
         return np.abs(lines[:, inputs:]) ** 2
@@ -167,9 +167,9 @@ def _unexplained_power(lines: Array, inputs: int) -> Array:
 
 
 def _local_residual(drive: Array, outputs: Array) -> Array:
-    """What polynomials in frequency times the drive (w, f, m) and 1 leave of the outputs (w, f, q): a local response and transient.
+    """Residual of the outputs (w, f, q) after polynomials in frequency times the drive (w, f, m) and 1: a local response and transient.
 
-    The local polynomial method (Pintelon & Schoukens 2012, ch. 7); where there are too few lines for the inputs, the outputs as they are.
+    Local polynomial method (Pintelon & Schoukens 2012, ch. 7); with too few lines for the inputs, the outputs unchanged.
     """
     lines = drive.shape[1]
     powers = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, lines), _DEGREE)
@@ -184,9 +184,9 @@ def _local_residual(drive: Array, outputs: Array) -> Array:
 
 
 def _prominent_lines(power: Array) -> list[int]:
-    """Numbers of lines that stand out in one of the powers (f, p), the loudest first, none beside another.
+    """Indices of prominent lines in one of the powers (f, p), the highest first, without neighbours.
 
-    The level is interpolated between chunks of lines: a step in it would rank a neighbour of a tone before the tone.
+    The level is interpolated between groups of lines: a step in it would rank a neighbour of a tone above the tone.
     """
     count = len(power) // _CHUNK
     if count < 1:
@@ -206,7 +206,7 @@ def _prominent_lines(power: Array) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class _Test:
-    """Lines as a slow motion in time (t, q), and how likely (q,) noise would be a sinusoid as sure, `offset` lines from the middle."""
+    """Lines as a slow motion in time (t, q), and the false-alarm probability (q,) of a sinusoid, `offset` lines from the middle."""
 
     slow: Array
     offset: float
@@ -229,7 +229,7 @@ def _test(lines: Array, inputs: int) -> _Test:
 
 @cache
 def _tapers(size: int) -> tuple[Array, Array, Array]:
-    """Offsets (d,) in lines, sums (k,) of sine tapers, and the tapers turned back by the offsets (d k, t)."""
+    """Offsets (d,) in lines, sums (k,) of sine tapers, and the tapers demodulated by the offsets (d k, t)."""
     time, order = np.arange(size), np.arange(1, _TAPERS + 1)
     tapers = np.sqrt(2.0 / (size + 1.0)) * np.sin(np.pi * np.outer(order, time + 1.0) / (size + 1.0))
     offsets = np.linspace(-1.0, 1.0, 33)
@@ -238,7 +238,7 @@ def _tapers(size: int) -> tuple[Array, Array, Array]:
 
 
 def _refine_offset(slow: Array, offset: float) -> tuple[float, float]:
-    """The offset in lines at which the spectra under Hann's window are largest, and the share that fades."""
+    """Offset in lines of the spectral maximum under Hann's window, and the decaying share."""
     time = np.arange(len(slow))
     window = np.hanning(len(slow) + 1)[:-1]
     level = np.var(slow, axis=0)
@@ -253,7 +253,7 @@ def _refine_offset(slow: Array, offset: float) -> tuple[float, float]:
 
 
 def _fit_beside_drive(drive: Array, rest: Array, offset: float) -> tuple[float, Array]:
-    """The offset and the amplitudes (q,) that fit what inputs do not explain: the stage's response there is no part of the tone."""
+    """Offset and amplitudes (q,) fitted to the residual after inputs, to exclude the stage's response."""
     place = np.arange(-(len(rest) // 2), len(rest) // 2)
     amplitudes = np.zeros(rest.shape[1], dtype=complex)
     for _ in range(_ZOOMS):
@@ -265,14 +265,14 @@ def _fit_beside_drive(drive: Array, rest: Array, offset: float) -> tuple[float, 
 
 
 def _line_shape(away: Array, order: int) -> Array:
-    """Integral over 0..1 of exp(2 pi j x t), or its derivative by x: what a sinusoid x lines away gives a line."""
+    """Integral over 0..1 of exp(2 pi j x t), or its derivative by x: a sinusoid's contribution to a line at distance x."""
     x = 2j * np.pi * np.where(np.abs(away) < _CLOSE, _CLOSE, away)
     turn = np.exp(x)
     return (turn - 1.0) / x if order == 0 else 2j * np.pi * (turn * (x - 1.0) + 1.0) / x**2
 
 
 def _fading_share(turned: Array) -> float:
-    """The share of amplitudes that fades from begin to end, nought where it is not five deviations from none."""
+    """Share of amplitudes that decays from start to end, zero if below five deviations."""
     ends = len(turned) // 16
     kept = turned[ends:-ends]
     time = (np.arange(len(kept)) - 0.5 * (len(kept) - 1.0)) / len(turned)

@@ -1,4 +1,4 @@
-"""Modes of stages whose inputs nobody recorded: shaken by the floor all along, or left to themselves after a blow or a release."""
+"""Modes of stages without recorded inputs: under continuous floor excitation, or in free decay after an impact or a release."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from flexstage.experiment.identification.outputs.tones import remove_tones
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 _EVIDENT, _WEAK = 6.1, 4.0
-"""Deviations by which a mode's width must differ from nought: noise reaches the first once in 1e9."""
+"""Deviations by which a mode's width must differ from zero: noise reaches the first once in 1e9."""
 _HIGHEST, _LOWEST = 0.42, 6.0
 _FEWEST = 400
 _SAME, _LOCATED = 0.95, 0.1
 _UNSCALED = (
-    "no input was recorded: participations, masses and mass-normalised shapes are unknown. Shapes are over their largest component; "
+    "no input was recorded: participations, masses and mass-normalised shapes are unknown. Shapes have largest component 1; "
     "scaling them takes a record with a known force or stroke."
 )
 
 
 def identify_floor(records: Sequence[Record], search: Search) -> Identified:
-    """Modes of a stage that the floor shakes all along, from outputs alone: `shaken_modes`, band by band, with 95 % intervals.
+    """Identify the modes of a stage under floor excitation from outputs only: `shaken_modes`, band by band, with 95 % intervals.
 
-    Forces on the stage need a density that is smooth within a band of 1.4 from end to end, in as many independent directions as modes lie
-    together. A mode is reported if its width is 6.1 standard deviations from zero, which noise reaches once in 1e9. Steady tones are taken
-    out before; a resonance narrower than the lines of a block are apart is not distinguished from one. Participations are not known: there
-    are no inputs in what is found. Raises `DesignError` for several records, and for a record too short.
+    The forces' density must be smooth within a band of ratio 1.4, in as many independent directions as modes coincide. A mode is reported
+    if its width is 6.1 standard deviations from zero, which noise reaches once in 1e9. Steady tones are removed before; a resonance
+    narrower than the line spacing of a block is not distinguished from a tone. Participations are unknown: the result has no inputs. Raises
+    `DesignError` for several records, and for a record too short.
     """
     require(_floor_findings(records))
     record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
@@ -44,11 +44,11 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     where = record.where
     if low >= high:
         what = f"modes up to {high:.4g} Hz are asked for; the record shows them from {low:.4g} Hz on"
-        require([Finding(where, what, "Ask for another band, or record longer")])
+        require([Finding(where, what, "Request another band, or record longer")])
     began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=resolution)
     if low == np.inf:
         what = f"bands between {began:.4g} and {high:.4g} Hz hold too few lines in a fortieth of {record.duration:.4g} s"
-        require([Finding(where, what, "Record longer: modes in the floor's noise take minutes; or ask for a wider band")])
+        require([Finding(where, what, "Record longer: modes in floor noise need minutes; or request a wider band")])
     bands, density = band_covariances(record, low, high)
     every = [shaken_modes(band, search.highest_damping) for band in bands]
     modes = [
@@ -70,7 +70,7 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
 
 
 def _without_doubles(modes: Iterable[Shaken]) -> list[Shaken]:
-    """Modes by rising frequency; of one that was found twice, in two bands or beside itself, the surer."""
+    """Modes by ascending frequency; of duplicates, from two bands or one, the more certain."""
     kept: list[Shaken] = []
     for mode in sorted(modes, key=_certainty, reverse=True):
         if not any(_is_double(mode, other) for other in kept):
@@ -84,11 +84,11 @@ def _is_double(first: Shaken, second: Shaken) -> bool:
 
 
 def identify_decay(records: Sequence[Record], search: Search) -> Identified:
-    """Modes of free decays, from outputs alone: the transform of a decay is a response with the stage's poles, to which modes are fitted.
+    """Identify modes of free decays from outputs only: the transform of a decay is a response with the stage's poles.
 
-    Of y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}): each decay is a column as
-    an input is, its amplitudes in the place of participations. It is taken from where the outputs are largest, relative to their root
-    mean squares, to the end. Several records are several decays; of repeated modes one shows one combination only.
+    For y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}): each decay is a column
+    like an input, with its amplitudes as participations. It starts at the largest outputs, relative to their root mean squares, and ends
+    with the record. Several records are several decays; of repeated modes one decay shows only one combination.
     """
     starts = [_largest(record) for record in records]
     size = min(record.length - start for record, start in zip(records, starts, strict=True))
@@ -118,13 +118,13 @@ def _floor_findings(records: Sequence[Record]) -> list[Finding]:
         return [
             Finding(
                 "--excitation floor",
-                f"there are {len(records)} records",
-                "Give one record: directions of the floor are not the same in others",
+                f"wrong number of records (got {len(records)}, expected 1)",
+                "Use one record: the floor's directions differ between records",
             )
         ]
     if records[0].length < BLOCKS * _FEWEST:
-        what = f"it has {records[0].length} samples, {BLOCKS} blocks of {_FEWEST} are needed"
-        return [Finding(where, what, "Record longer: modes in the floor's noise take minutes")]
+        what = f"too short (got {records[0].length} samples, expected {BLOCKS} blocks of {_FEWEST})"
+        return [Finding(where, what, "Record longer: modes in floor noise need minutes")]
     return []
 
 
