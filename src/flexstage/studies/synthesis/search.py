@@ -1,0 +1,338 @@
+"""Search of stages for a specification: proofs of impossibility by bounds, then optimisation of every architecture and actuator."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError
+from flexstage.base.notebook import InNotebook
+from flexstage.base.record import INNER, Heading
+from flexstage.base.units.expression import evaluate, parse_expression
+from flexstage.base.units.quantity import RATIO
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store import loads
+from flexstage.studies.optimisation.file import load_optimisation
+from flexstage.studies.optimisation.result import Optimum
+from flexstage.studies.optimisation.search.optimum import optimise
+from flexstage.studies.optimisation.stage_text import write_optimum
+from flexstage.studies.optimisation.values import Point, values_of
+from flexstage.studies.sweeps.file import loads_study
+from flexstage.studies.synthesis import bounds
+from flexstage.studies.synthesis.architecture import (
+    Actuator,
+    Architecture,
+    catalogue_actuators,
+    draw,
+    find_architectures,
+    required_frequency,
+    scope,
+    study_text,
+)
+from flexstage.studies.synthesis.specification import Specification
+
+Progress = Callable[[str, float], None]
+"""Reports what is computed, and the share that is done."""
+
+
+@dataclass(frozen=True)
+class Shortfall:
+    """A bound that a pair cannot meet: the requirement, the best value and the required one [SI], the reason, and who it holds for.
+
+    `universal`: for every mechanism with these actuators; otherwise for the architecture alone. `smallest` is true of a required value
+    that is too small, such as the length of a box.
+    """
+
+    requirement: str
+    best: float
+    required: float
+    unit: str
+    reason: str
+    universal: bool = False
+
+    @property
+    def ratio(self) -> float:
+        """Best value as a share of the required one."""
+        return self.best / self.required
+
+
+@dataclass(frozen=True)
+class Pair:
+    """An architecture with an actuator."""
+
+    architecture: Architecture
+    actuator: Actuator
+
+    @property
+    def name(self) -> str:
+        """Its name: architecture and actuator."""
+        return f"{self.architecture.name} with {self.actuator.name}"
+
+
+@dataclass(frozen=True)
+class ImpossiblePair:
+    """A pair that a bound excludes, with the smallest ratio of best to required value."""
+
+    architecture: str
+    actuator: str
+    shortfall: Shortfall
+
+
+@dataclass(frozen=True)
+class FailedPair:
+    """A pair without a design that keeps all requirements: the least violation, relative, and the requirements that contradict."""
+
+    architecture: str
+    actuator: str
+    violation: Annotated[float | None, RATIO]
+    requirements: tuple[str, ...]
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A stage that keeps all requirements in the lumped model: the text of its design file and study, goal [SI] and active requirements.
+
+    `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
+    coils. `status` is the verification of the answer.
+    """
+
+    architecture: str
+    actuator: str
+    goal: Annotated[float, Heading(digits=5)]
+    values: dict[str, float]
+    active: tuple[str, ...]
+    efficiency: float | None
+    agreeing: int
+    starts: int
+    evaluated: int
+    status: str = "lumped model"
+    design: Annotated[str, INNER] = ""
+    study: Annotated[str, INNER] = ""
+
+    @property
+    def stage(self) -> Annotated[Mechanism, INNER]:
+        """The stage."""
+        return loads(self.design)
+
+    @property
+    def file(self) -> str:
+        """Name of its files, without ending."""
+        sign = "".join(each if each.isalnum() else "-" for each in self.actuator.lower()).strip("-")
+        return f"{self.architecture}-{sign}"
+
+
+@dataclass(frozen=True, eq=False)
+class Answers(InNotebook):
+    """The outcome of a specification: `answers` from the best goal on, pairs that `failed`, and those that a bound makes `impossible`."""
+
+    specification: Annotated[Specification, INNER]
+    answers: tuple[Answer, ...]
+    failed: tuple[FailedPair, ...]
+    impossible: tuple[ImpossiblePair, ...]
+
+    @property
+    def best(self) -> Annotated[Answer | None, INNER]:
+        """The first answer, if there is any."""
+        return self.answers[0] if self.answers else None
+
+
+@check_arguments
+def design(specification: Specification, architectures: tuple[str, ...] = (), progress: Progress | None = None) -> Answers:
+    """Design stages for a specification: every architecture that has its motions, with every allowed actuator of the catalogue.
+
+    Bounds exclude pairs first (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements, as
+    `studies.optimise` does. An empty `architectures` means all. Raises `DesignError` where no architecture has the motions.
+
+    >>> from flexstage.studies.synthesis.specification import loads_specification
+    >>> found = design(loads_specification('''
+    ... format = "flexstage specification 1"
+    ... name = "impossible"
+    ... motion = { x = "0.5 mm", y = "0.5 mm" }
+    ... payload = { mass = "1 kg", size = ["60 mm", "60 mm", "20 mm"] }
+    ... box = { size = ["120 mm", "120 mm", "40 mm"] }
+    ... actuators.kinds = ["piezo"]
+    ... requirements.frequency = "at least 500 Hz"
+    ... '''))
+    >>> found.best is None, {each.shortfall.requirement for each in found.impossible}
+    (True, {'frequency'})
+    """
+    known = catalogue_actuators(specification)
+    pairs = [Pair(each, actuator) for each in find_architectures(specification, architectures) for actuator in known.get(each.kind, ())]
+    screened = [(pair, list(shortfalls(specification, pair))) for pair in pairs]
+    open_pairs = sorted((pair for pair, faults in screened if not faults), key=lambda pair: (_demand(specification, pair), pair.name))
+    results: list[Answer | FailedPair] = []
+    for number, pair in enumerate(open_pairs):
+        said = f"{pair.name} ({number + 1} of {len(open_pairs)})"
+        results.append(search(specification, pair, None if progress is None else _told(progress, said, number / len(open_pairs))))
+    sign = -1.0 if specification.goal[0] == "maximise" else 1.0
+    return Answers(
+        specification,
+        tuple(sorted((each for each in results if isinstance(each, Answer)), key=lambda each: (sign * each.goal, each.file))),
+        tuple(sorted((each for each in results if isinstance(each, FailedPair)), key=lambda each: each.violation or math.inf)),
+        tuple(
+            ImpossiblePair(pair.architecture.name, pair.actuator.name, min(faults, key=lambda each: (not each.universal, each.ratio)))
+            for pair, faults in screened
+            if faults
+        ),
+    )
+
+
+def _told(progress: Progress, pair: str, share: float) -> Callable[[str], None]:
+    return lambda text: progress(f"{pair}: {text}", share)
+
+
+def _energy(pair: Pair) -> float | None:
+    """Stroke energy of all actuators of a pair [J]; `None` of coils."""
+    actuator = pair.actuator
+    if actuator.kind == "voice_coil":
+        return None
+    return bounds.stroke_energy(actuator.stroke, actuator.stiffness, pair.architecture.count)
+
+
+def _demand(spec: Specification, pair: Pair) -> float:
+    """Required energy as a share of that of the actuators; the least demanding pairs are searched first."""
+    energy, frequency = _energy(pair), required_frequency(spec)
+    if energy is None or frequency is None:
+        return 0.0
+    return bounds.required_energy(spec.displacements, spec.masses, frequency) / energy
+
+
+def shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
+    """Yield the bounds that a pair cannot meet.
+
+    >>> from flexstage.studies.synthesis.architecture import architectures
+    >>> from flexstage.studies.synthesis.example import scanner
+    >>> spec = scanner()
+    >>> pairs = [Pair(architectures()["carriages"], each) for each in catalogue_actuators(spec)["piezo"]]
+    >>> [next(shortfalls(spec, each), None) is None for each in pairs]
+    [True, True, False, False, False, False]
+    """
+    frequency, moved, masses = required_frequency(spec), spec.displacements, spec.masses
+    energy = _energy(pair)
+    if frequency is not None and energy is not None:
+        best = bounds.frequency_bound(energy, moved, masses)
+        if best < frequency:
+            factor = bounds.displacement_factor(energy, moved, masses, frequency)
+            needed = bounds.required_energy(moved, masses, frequency)
+            reason = (
+                f"{pair.architecture.count} actuators store {energy:.3g} J, and the motions need {needed:.3g} J; "
+                f"at most {100 * factor:.0f} % of the displacements, or {best:.4g} Hz"
+            )
+            yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
+    if frequency is not None and energy is None:
+        yield from _force_shortfalls(spec, pair, frequency)
+    yield from _stroke_shortfalls(spec, pair)
+    yield from _leaf_shortfalls(spec, pair)
+
+
+def _force_shortfalls(spec: Specification, pair: Pair, frequency: float) -> Iterator[Shortfall]:
+    source = bounds.ForceSource(pair.actuator.force, float(pair.actuator.part.mass), pair.actuator.stroke, pair.architecture.count)
+    for axis, value in spec.displacements.items():
+        if axis.startswith("r"):
+            continue  # the arm of the force is a matter of the box
+        best = bounds.force_frequency_bound(source, value, spec.masses[axis])
+        if best < frequency:
+            reason = f"{source.count} coils of {source.force:.3g} N continuously, with the best lever"
+            yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
+
+
+def _stroke_shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
+    stroke, moved = pair.actuator.stroke, spec.displacements
+    if pair.architecture.direct:
+        for axis, value in moved.items():
+            if value > 0.5 * stroke:
+                yield Shortfall(f"motion.{axis}", 0.5 * stroke, value, "m", "the actuator pushes the platform without a lever")
+    if pair.architecture.struts:
+        flat = max(moved["x"], moved["y"])
+        least = 1.0 / math.hypot(0.5 / moved["z"], 0.5 / (flat * math.cos(math.pi / 6.0)))
+        if stroke < least:
+            reason = f"struts of {1e6 * stroke:.4g} um, whatever their slope: x and z need {1e6 * least:.4g} um"
+            yield Shortfall("motion.z", moved["z"] * stroke / least, moved["z"], "m", reason)
+
+
+def _leaf_shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
+    rule = pair.architecture.leaf
+    if rule is None:
+        return
+    material = loads(draw(pair.architecture, spec, pair.actuator), checked=False).materials["flexure"]
+    if material.yield_stress is None:
+        return
+    travel = rule.share * max(value for axis, value in spec.displacements.items() if axis in "xyz")
+    stress = float(material.yield_stress) / _safety(spec)
+    needed = bounds.leaf_length(spec.make.thinnest, travel, float(material.young or 0.0), float(material.contraction), stress)
+    room = float(evaluate(parse_expression(rule.room), scope(pair.architecture, spec, pair.actuator)).value)
+    if needed > room:
+        reason = f"the thinnest leaves must be {1e3 * needed:.3g} mm long to bend by {1e3 * travel:.3g} mm"
+        yield Shortfall("box", room, needed, "m", reason)
+
+
+def _safety(spec: Specification) -> float:
+    text = spec.requirements.get("safety", "at least 2")
+    return float(text.removeprefix("at least "))
+
+
+def search(spec: Specification, pair: Pair, progress: Callable[[str], None] | None = None) -> Answer | FailedPair:
+    """Optimise one pair; an architecture that cannot be drawn or analysed is a failed pair with its reason.
+
+    >>> from flexstage.studies.synthesis.architecture import architectures
+    >>> from flexstage.studies.synthesis.example import scanner
+    >>> pair = Pair(architectures()["carriages"], catalogue_actuators(scanner())["piezo"][0])
+    >>> search(scanner(), pair).architecture
+    'carriages'
+    """
+    text = draw(pair.architecture, spec, pair.actuator)
+    study_file = study_text(pair.architecture, spec, pair.actuator, "stage.toml")
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "stage.toml").write_text(text, encoding="utf-8")
+            study = loads_study(study_file, where=f"{folder}/study.toml", folder=Path(folder))
+            problem = load_optimisation(study)
+            found = optimise(study, problem, progress)
+    except DesignError as error:
+        return FailedPair(pair.architecture.name, pair.actuator.name, None, (), str(error))
+    if found.final is None:
+        return _failed(pair, found)
+    values = values_of(study, found.final.shares)
+    return _answer(spec, pair, found, found.final, (write_optimum(text, study, problem, values), study_file))
+
+
+def _failed(pair: Pair, found: Optimum) -> FailedPair:
+    names = (pair.architecture.name, pair.actuator.name)
+    if not found.contradictions:
+        return FailedPair(*names, None, (), found.failure)
+    first = found.contradictions[0]
+    return FailedPair(*names, first.violation, tuple(f"{each.key} {each.text}" for each in first.limits))
+
+
+def _answer(spec: Specification, pair: Pair, found: Optimum, point: Point, texts: tuple[str, str]) -> Answer:
+    limits = found.design(point).limits
+    energy, first = _energy(pair), next((each.value for each in limits if each.measure == "frequency.1"), None)
+    used = None if energy is None or first is None else bounds.efficiency(first, energy, spec.displacements, spec.masses)
+    return Answer(
+        pair.architecture.name,
+        pair.actuator.name,
+        float(point.values[0]),
+        {each.measure: each.value for each in limits},
+        tuple(each.name for each in found.binding),
+        used,
+        found.agreeing,
+        len(found.starts),
+        found.evaluated,
+        design=texts[0],
+        study=texts[1],
+    )
+
+
+def all_names(found: Sequence[Answer]) -> list[str]:
+    """Return the file names of answers, numbered from 1.
+
+    >>> all_names([])
+    []
+    """
+    return [f"{number}-{each.file}" for number, each in enumerate(found, 1)]
