@@ -19,7 +19,6 @@ from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.expression import Amount, evaluate, parse_expression
 from flexstage.base.units.quantity import FREQUENCY, Quantity
 from flexstage.base.units.unit import parse, quantity_of_dimension, show
-from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.store.decode import catalogue_of, mechanism_from
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specification
@@ -57,11 +56,14 @@ class Architecture:
     count: int
     serves: tuple[frozenset[str], ...] = ()
     turns: bool = False
+    own: bool = False
     direct: bool = False
     struts: bool = False
     leaf: LeafRule | None = None
     set: Mapping[str, str] = field(default_factory=dict)
     ranges: Mapping[str, tuple[str, str, str]] = field(default_factory=dict)
+    limits: Mapping[str, str] = field(default_factory=dict)
+    """Least values of measures, as formulas."""
 
     def is_for(self, motions: frozenset[str]) -> bool:
         """Whether the architecture has exactly these motions.
@@ -141,14 +143,16 @@ def catalogue_actuators(spec: Specification, where: str = "spec") -> dict[str, l
             continue
         for name in sorted(section.entries):
             if spec.actuators.like is None or name in spec.actuators.like:
-                found[str(section.kind)].append(Actuator(name, str(section.kind), _part(known, name, str(section.kind))))
+                found[str(section.kind)].append(Actuator(name, str(section.kind), _entry(spec, "parts", name, kind=str(section.kind))))
     return found
 
 
-def _part(catalogue: Catalogue, name: str, kind: str) -> Any:
-    entry = next(section.entries[name] for section in catalogue.sections if section.kind == kind)
-    plain = {key: value for key, value in entry.items() if key != "tags"}
-    return mechanism_from({"format": "flexstage 1", "name": "a", "parts": {"part": {**plain, "kind": kind}}}).parts["part"]
+def _entry(spec: Specification, section: str, like: str, **more: str) -> Any:
+    """An entry of the catalogue as a material or part of a stage."""
+    tree = {"format": "flexstage 1", "name": "a", section: {"entry": {"like": like, **more}}}
+    if spec.catalogue is not None:
+        tree["catalogue"] = spec.catalogue
+    return getattr(mechanism_from(tree), section)["entry"]
 
 
 def turned_axes(architecture: Architecture, spec: Specification) -> Array:
@@ -175,9 +179,18 @@ def scope(architecture: Architecture, spec: Specification, actuator: Actuator) -
         "diameter": getattr(actuator.part, "diameter", None) or 0.0,
     }
     amounts = {name: Amount(float(value), _LENGTH) for name, value in found.items()}
+    amounts["plate_speed"] = Amount(_plate_speed(spec), dimension_of("m/s"))
+    if (frequency := required_frequency(spec)) is not None:
+        amounts["frequency"] = Amount(frequency, dimension_of("1/s"))
     moved = spec.displacements
     named = {"x": next(iter(moved.values()))} if architecture.turns else moved
     return amounts | {axis: Amount(value, _ANGLE if axis.startswith("r") else _LENGTH) for axis, value in named.items()}
+
+
+def _plate_speed(spec: Specification) -> float:
+    """The factor sqrt(E / (12 rho (1 - nu^2))) of the bodies' material in the frequencies of plates [m/s]."""
+    body = _entry(spec, "materials", spec.make.bodies)
+    return float((body.young / (12.0 * body.density * (1.0 - body.poisson**2))) ** 0.5)
 
 
 def payload_height(spec: Specification) -> float:
@@ -211,10 +224,10 @@ def measure_key(architecture: Architecture, spec: Specification, key: str) -> st
 
     >>> from flexstage.studies.synthesis.example import scanner
     >>> measure_key(architectures()["carriages"], scanner(), "unwanted")
-    'frequency.3'
+    'frequency.unwanted'
     """
     if key in FREQUENCY_KEYS:
-        return "frequency.1" if key == FREQUENCY_KEYS[0] else f"frequency.{len(spec.displacements) + 1}"
+        return "frequency.1" if key == FREQUENCY_KEYS[0] else "frequency.unwanted"
     kind, _, axis = key.rpartition(".")
     if not architecture.turns or axis not in COMPONENTS:
         return key
@@ -223,14 +236,19 @@ def measure_key(architecture: Architecture, spec: Specification, key: str) -> st
     return f"{kind}.{axis[:-1]}{own}"
 
 
-def requirement_lines(architecture: Architecture, spec: Specification) -> dict[str, str]:
+def requirement_lines(architecture: Architecture, spec: Specification, known: Mapping[str, Amount]) -> dict[str, str]:
     """Return the requirements of a design of this architecture, by measure."""
     lines = {}
+    for key, formula in architecture.limits.items() if "frequency" in known else ():
+        found = evaluate(parse_expression(formula), known)
+        lines[key] = f"at least {show(float(found.value), quantity_of_dimension(found.dimension), digits=_DIGITS)}"
     for axis, value in spec.displacements.items():
         quantity = quantity_of_dimension(_ANGLE, "urad") if axis.startswith("r") else quantity_of_dimension(_LENGTH, "um")
         lines[measure_key(architecture, spec, f"stroke.{axis}")] = f"at least {show(value, quantity, digits=_DIGITS)}"
     lines |= {measure_key(architecture, spec, key): text for key, text in spec.requirements.items()}
     lines.setdefault("safety", "at least 2")
+    if spec.together and architecture.kind != "voice_coil":
+        lines["corner"] = "at most 100 %"
     box = np.abs(turned_axes(architecture, spec)) @ np.array(spec.box.size)
     return lines | {f"envelope.{axis}": f"at most {_mm(value)}" for axis, value in zip("xyz", box, strict=True)}
 
@@ -258,7 +276,7 @@ def draw(architecture: Architecture, spec: Specification, actuator: Actuator) ->
     tree["parts"][architecture.slot] = {"kind": architecture.kind, "like": actuator.name}
     _set_numbers(tree["numbers"], architecture, spec, known)
     _set_payload(tree, architecture, spec)
-    tree["requirements"] = requirement_lines(architecture, spec)
+    tree["requirements"] = requirement_lines(architecture, spec, known)
     return tomlkit.dumps(document)
 
 
@@ -306,7 +324,7 @@ def required_frequency(spec: Specification) -> float | None:
 
 
 def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list[Architecture]:
-    """Return the architectures that serve the motions of a specification. Raises `DesignError` with the sets of motions if there is none."""
+    """Return the architectures that serve the motions of a specification. Raises `DesignError` if there is none."""
     known = architectures()
     if unknown := [name for name in names if name not in known]:
         raise refuse("--architecture", f'unknown architecture "{unknown[0]}"', f"Use one of {', '.join(known)}")

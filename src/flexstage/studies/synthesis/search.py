@@ -44,8 +44,7 @@ Progress = Callable[[str, float], None]
 class Shortfall:
     """A bound that a pair cannot meet: the requirement, the best value and the required one [SI], the reason, and who it holds for.
 
-    `universal`: for every mechanism with these actuators; otherwise for the architecture alone. `smallest` is true of a required value
-    that is too small, such as the length of a box.
+    `universal`: for every mechanism with these actuators, otherwise for the architecture alone.
     """
 
     requirement: str
@@ -105,6 +104,7 @@ class Answer:
     architecture: str
     actuator: str
     goal: Annotated[float, Heading(digits=5)]
+    unit: str
     values: dict[str, float]
     active: tuple[str, ...]
     efficiency: float | None
@@ -195,12 +195,18 @@ def _energy(pair: Pair) -> float | None:
     return bounds.stroke_energy(actuator.stroke, actuator.stiffness, pair.architecture.count)
 
 
+def _groups(spec: Specification, pair: Pair) -> list[tuple[float, dict[str, float]]]:
+    """Energies of actuators [J] with the displacements that they reach at once: of each axis on its own, or of all together."""
+    energy, moved = _energy(pair) or math.inf, spec.displacements
+    if pair.architecture.own:
+        return [(energy / len(moved), {axis: value}) for axis, value in moved.items()]
+    return [(energy, moved)] if spec.together else [(energy, {axis: value}) for axis, value in moved.items()]
+
+
 def _demand(spec: Specification, pair: Pair) -> float:
     """Required energy as a share of that of the actuators; the least demanding pairs are searched first."""
-    energy, frequency = _energy(pair), required_frequency(spec)
-    if energy is None or frequency is None:
-        return 0.0
-    return bounds.required_energy(spec.displacements, spec.masses, frequency) / energy
+    frequency = required_frequency(spec)
+    return 0.0 if frequency is None else max(bounds.efficiency(frequency, *each, spec.masses) for each in _groups(spec, pair))
 
 
 def shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
@@ -213,22 +219,26 @@ def shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
     >>> [next(shortfalls(spec, each), None) is None for each in pairs]
     [True, True, False, False, False, False]
     """
-    frequency, moved, masses = required_frequency(spec), spec.displacements, spec.masses
-    energy = _energy(pair)
-    if frequency is not None and energy is not None:
-        best = bounds.frequency_bound(energy, moved, masses)
-        if best < frequency:
-            factor = bounds.displacement_factor(energy, moved, masses, frequency)
-            needed = bounds.required_energy(moved, masses, frequency)
-            reason = (
-                f"{pair.architecture.count} actuators store {energy:.3g} J, and the motions need {needed:.3g} J; "
-                f"at most {100 * factor:.0f} % of the displacements, or {best:.4g} Hz"
-            )
-            yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
-    if frequency is not None and energy is None:
+    frequency = required_frequency(spec)
+    if frequency is not None and pair.actuator.kind != "voice_coil":
+        yield from _energy_shortfalls(spec, pair, frequency)
+    elif frequency is not None:
         yield from _force_shortfalls(spec, pair, frequency)
     yield from _stroke_shortfalls(spec, pair)
     yield from _leaf_shortfalls(spec, pair)
+
+
+def _energy_shortfalls(spec: Specification, pair: Pair, frequency: float) -> Iterator[Shortfall]:
+    for energy, moved in _groups(spec, pair):
+        best = bounds.frequency_bound(energy, moved, spec.masses)
+        if best < frequency:
+            factor = bounds.displacement_factor(energy, moved, spec.masses, frequency)
+            needed = bounds.required_energy(moved, spec.masses, frequency)
+            reason = (
+                f"{', '.join(moved)}: the actuators store {energy:.3g} J, and {needed:.3g} J is needed; "
+                f"at most {100 * factor:.0f} % of the displacement, or {best:.4g} Hz"
+            )
+            yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
 
 
 def _force_shortfalls(spec: Specification, pair: Pair, frequency: float) -> Iterator[Shortfall]:
@@ -312,12 +322,14 @@ def _failed(pair: Pair, found: Optimum) -> FailedPair:
 
 def _answer(spec: Specification, pair: Pair, found: Optimum, point: Point, texts: tuple[str, str]) -> Answer:
     limits = found.design(point).limits
-    energy, first = _energy(pair), next((each.value for each in limits if each.measure == "frequency.1"), None)
-    used = None if energy is None or first is None else bounds.efficiency(first, energy, spec.displacements, spec.masses)
+    first = next((each.value for each in limits if each.measure == "frequency.1"), None)
+    coil = pair.actuator.kind == "voice_coil"
+    used = None if coil or first is None else max(bounds.efficiency(first, *each, spec.masses) for each in _groups(spec, pair))
     return Answer(
         pair.architecture.name,
         pair.actuator.name,
         float(point.values[0]),
+        found.definition.objectives[0].measure.quantity.si,
         {each.measure: each.value for each in limits},
         tuple(each.name for each in found.binding),
         used,

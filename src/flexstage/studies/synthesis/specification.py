@@ -106,7 +106,10 @@ class Specification:
     """A specification: what a stage must do, in the frame of its box (z is up).
 
     `requirements` are `frequency` (first natural frequency), `unwanted` (first frequency of a motion that is not required), and any measure
-    of a design file's requirements; `safety` is at least 2 unless stated. `starts` and `seed` belong to the search of each pair.
+    of a design file's requirements; `safety` is at least 2 unless stated.
+
+    `together`: all displacements are reached at once, at the corners of their box, instead of each on its own. `starts` and `seed` belong
+    to the search of each pair.
     """
 
     name: str
@@ -117,6 +120,7 @@ class Specification:
     make: MakeTable = MakeTable()
     actuators: ActuatorTable = ActuatorTable()
     goals: GoalTable = GoalTable()
+    together: bool = False
     catalogue: str | None = None
     starts: Annotated[int, _STARTS] = 2
     seed: Annotated[int, NOT_NEGATIVE] = 0
