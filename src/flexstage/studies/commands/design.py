@@ -12,6 +12,7 @@ from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.options import output_option
 from flexstage.show.command.output import announce, make_folder, write
 from flexstage.show.command.progress import progress_bar
+from flexstage.studies.synthesis.architecture import DESIGN
 from flexstage.studies.synthesis.search import Answers, all_names
 from flexstage.studies.synthesis.search import design as find_designs
 from flexstage.studies.synthesis.show.tables import answer_tables
@@ -36,7 +37,7 @@ def design(
     spec = load_specification(specification)
     with progress_bar() as shown:
         found = find_designs(spec, tuple(architecture or ()), shown.share)
-    if output is not None:
+    if output is not None and found.answers:
         _write(found, output)
     return CommandResult(None, lambda: found, lambda: answer_tables(found), None, Model.LUMPED, failed=found.best is None)
 
@@ -45,5 +46,5 @@ def _write(found: Answers, folder: Path) -> None:
     make_folder(folder)
     for name, answer in zip(all_names(found.answers), found.answers, strict=True):
         write(folder / f"{name}.toml", answer.design, "--output")
-        write(folder / f"{name}.study.toml", answer.study.replace('"stage.toml"', f'"{name}.toml"'), "--output")
+        write(folder / f"{name}.study.toml", answer.study.replace(f'"{DESIGN}"', f'"{name}.toml"'), "--output")
     announce(f"Wrote {len(found.answers)} design files and studies in {folder}")

@@ -19,6 +19,7 @@ from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.expression import Amount, evaluate, parse_expression
 from flexstage.base.units.quantity import FREQUENCY, Quantity
 from flexstage.base.units.unit import parse, quantity_of_dimension, show
+from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.store.decode import catalogue_of, mechanism_from
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specification
@@ -30,6 +31,8 @@ else:
 
 _LENGTH, _ANGLE = dimension_of("m"), dimension_of("rad")
 _DIGITS = 7
+DESIGN = "stage.toml"
+"""The design file that a study of the search names."""
 _TURNS: Mapping[str, Array] = {
     "x": np.eye(3),
     "y": np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
@@ -239,7 +242,9 @@ def measure_key(architecture: Architecture, spec: Specification, key: str) -> st
 def requirement_lines(architecture: Architecture, spec: Specification, known: Mapping[str, Amount]) -> dict[str, str]:
     """Return the requirements of a design of this architecture, by measure."""
     lines = {}
-    for key, formula in architecture.limits.items() if "frequency" in known else ():
+    for key, formula in architecture.limits.items():
+        if "frequency" in formula and "frequency" not in known:
+            continue
         found = evaluate(parse_expression(formula), known)
         lines[key] = f"at least {show(float(found.value), quantity_of_dimension(found.dimension), digits=_DIGITS)}"
     for axis, value in spec.displacements.items():
@@ -257,14 +262,15 @@ def _mm(value: float) -> str:
     return show(float(value), quantity_of_dimension(_LENGTH, "mm"), digits=_DIGITS)
 
 
-def draw(architecture: Architecture, spec: Specification, actuator: Actuator) -> str:
-    """Return the design file's text of an architecture for a specification, with the start values of the numbers that are searched."""
+def draw(architecture: Architecture, spec: Specification, actuator: Actuator, without: frozenset[str] = frozenset()) -> str:
+    """Return the design file's text of an architecture for a specification, with the start values of the numbers that are searched.
+
+    Requirements `without` are left out.
+    """
     known = scope(architecture, spec, actuator)
     document = tomlkit.parse(architecture.text)
     tree: Any = document
     tree["name"] = f"{spec.name}: {architecture.name} with {actuator.name}"
-    if spec.catalogue is not None:
-        tree["catalogue"] = spec.catalogue
     turn = turned_axes(architecture, spec)
     tree["envelope"] = [_mm(value) for value in np.abs(turn) @ np.array(spec.box.size)]
     tree["gravity"] = [f"{value:.7g} m/s^2" for value in turn @ np.array([0.0, 0.0, -9.80665])]
@@ -272,12 +278,22 @@ def draw(architecture: Architecture, spec: Specification, actuator: Actuator) ->
         tree["opening"] = {"size": [_mm(value) for value in spec.box.opening]}
     for name, like in (("flexure", spec.make.flexures), ("body", spec.make.bodies)):
         if name in tree["materials"]:
-            tree["materials"][name]["like"] = like
-    tree["parts"][architecture.slot] = {"kind": architecture.kind, "like": actuator.name}
+            tree["materials"][name] = _stated(spec, "materials", like)
+    tree["parts"][architecture.slot] = {"kind": architecture.kind, **_stated(spec, architecture.kind, actuator.name)}
     _set_numbers(tree["numbers"], architecture, spec, known)
     _set_payload(tree, architecture, spec)
-    tree["requirements"] = requirement_lines(architecture, spec, known)
+    lines = requirement_lines(architecture, spec, known)
+    tree["requirements"] = {key: text for key, text in lines.items() if key not in without}
     return tomlkit.dumps(document)
+
+
+def _stated(spec: Specification, section: str, name: str) -> dict[str, Any]:
+    """An entry of the catalogue in a design file: by name, or by its values where it is of the user's own."""
+    found = [each for each in catalogue_of(spec.catalogue, "spec").sections if section in (each.name, each.kind) and name in each.entries]
+    shipped = [each for each in shipped_catalogue().sections if section in (each.name, each.kind)]
+    if not found or found[0].entries[name] == shipped[0].entries.get(name):
+        return {"like": name}
+    return {key: value for key, value in found[0].entries[name].items() if key != "tags"}
 
 
 def _set_numbers(table: Any, architecture: Architecture, spec: Specification, known: Mapping[str, Amount]) -> None:
@@ -304,16 +320,21 @@ def _set_payload(tree: Any, architecture: Architecture, spec: Specification) -> 
         tree["numbers"]["payload_at_z"] = "0 mm" if upright else f"depth/2 + {height}"
 
 
-def study_text(architecture: Architecture, spec: Specification, actuator: Actuator, design: str) -> str:
-    """Return the study that searches a design of an architecture: its variables, and the goal of the specification."""
-    lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f"design = {json.dumps(design)}", "", "[variables]"]
+def specified_goal(architecture: Architecture, spec: Specification) -> tuple[str, str]:
+    """Return the goal of a specification as the direction and the measure of a design of this architecture."""
+    way, key = spec.goal
+    return way, measure_key(architecture, spec, key)
+
+
+def study_text(architecture: Architecture, spec: Specification, actuator: Actuator, goal: tuple[str, str]) -> str:
+    """Return the study that searches a design of an architecture: its variables, and the goal, a direction and a measure."""
+    lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', "", "[variables]"]
     for each in variables(architecture, scope(architecture, spec, actuator)):
         low, high = (show(value, each.quantity, digits=_DIGITS) for value in (each.low, each.high))
         step = "" if each.quantity.si == "rad" else f', step = "{_mm(spec.make.step)}"'
         even = "" if each.low <= 0.0 or each.quantity.si == "rad" else ", logarithmic = true"
         lines.append(f'{each.name} = {{ address = "numbers.{each.name}", from = "{low}", to = "{high}"{even}{step} }}')
-    way, key = spec.goal
-    lines += ["", "[responses]", f'goal = "{measure_key(architecture, spec, key)}"', "", "[optimise]", f'{way} = "goal"']
+    lines += ["", "[responses]", f'goal = "{goal[1]}"', "", "[optimise]", f'{goal[0]} = "goal"']
     return "\n".join([*lines, f"starts = {spec.starts}", f"seed = {spec.seed}", ""])
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
+from flexstage.analysis.caveats import check
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
@@ -25,6 +26,7 @@ from flexstage.studies.optimisation.values import Point, values_of
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.synthesis import bounds
 from flexstage.studies.synthesis.architecture import (
+    DESIGN,
     Actuator,
     Architecture,
     catalogue_actuators,
@@ -32,12 +34,16 @@ from flexstage.studies.synthesis.architecture import (
     find_architectures,
     required_frequency,
     scope,
+    specified_goal,
     study_text,
 )
 from flexstage.studies.synthesis.specification import Specification
 
 Progress = Callable[[str, float], None]
 """Reports what is computed, and the share that is done."""
+
+_RELAXED = 3
+"""Failed pairs whose requirements are relaxed."""
 
 
 @dataclass(frozen=True)
@@ -83,14 +89,28 @@ class ImpossiblePair:
 
 
 @dataclass(frozen=True)
+class Relaxation:
+    """The best value [SI] of a requirement with all others kept, found by search; `required` are the words of the specification."""
+
+    measure: str
+    required: str
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True)
 class FailedPair:
-    """A pair without a design that keeps all requirements: the least violation, relative, and the requirements that contradict."""
+    """A pair without a design that keeps all requirements: the least violation, relative, and the requirements that contradict.
+
+    `relaxed`: values at which one of them could be kept with all others; searched for the least violations if no pair has an answer.
+    """
 
     architecture: str
     actuator: str
     violation: Annotated[float | None, RATIO]
-    requirements: tuple[str, ...]
+    requirements: Mapping[str, str]
     reason: str = ""
+    relaxed: tuple[Relaxation, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +118,7 @@ class Answer:
     """A stage that keeps all requirements in the lumped model: the text of its design file and study, goal [SI] and active requirements.
 
     `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
-    coils. `status` is the verification of the answer.
+    coils. `warnings` are those of `flexstage check`; `status` is the verification of the answer.
     """
 
     architecture: str
@@ -111,6 +131,7 @@ class Answer:
     agreeing: int
     starts: int
     evaluated: int
+    warnings: tuple[str, ...]
     status: str = "lumped model"
     design: Annotated[str, INNER] = ""
     study: Annotated[str, INNER] = ""
@@ -170,6 +191,8 @@ def design(specification: Specification, architectures: tuple[str, ...] = (), pr
     for number, pair in enumerate(open_pairs):
         said = f"{pair.name} ({number + 1} of {len(open_pairs)})"
         results.append(search(specification, pair, None if progress is None else _told(progress, said, number / len(open_pairs))))
+    if not any(isinstance(each, Answer) for each in results):
+        results = _with_relaxations(specification, open_pairs, results, progress)
     sign = -1.0 if specification.goal[0] == "maximise" else 1.0
     return Answers(
         specification,
@@ -181,6 +204,33 @@ def design(specification: Specification, architectures: tuple[str, ...] = (), pr
             if faults
         ),
     )
+
+
+def _with_relaxations(
+    spec: Specification, pairs: Sequence[Pair], results: list[Answer | FailedPair], progress: Progress | None
+) -> list[Answer | FailedPair]:
+    """The failed pairs, those with the least violations with relaxed values."""
+    failed = [(each, pair) for each, pair in zip(results, pairs, strict=True) if isinstance(each, FailedPair)]
+    failed.sort(key=lambda each: math.inf if each[0].violation is None else each[0].violation)
+    found: list[Answer | FailedPair] = []
+    for number, (each, pair) in enumerate(failed):
+        said = None if progress is None else _told(progress, f"{pair.name}, relaxed", number / len(failed))
+        found.append(replace(each, relaxed=tuple(relaxations(spec, pair, each, said))) if number < _RELAXED else each)
+    return found
+
+
+def relaxations(spec: Specification, pair: Pair, failed: FailedPair, progress: Callable[[str], None] | None = None) -> Iterator[Relaxation]:
+    """Yield the best value of each contradicting requirement with the others kept; those along x and y are relaxed together."""
+    done = set[str]()
+    for key, text in failed.requirements.items():
+        kind, _, axis = key.rpartition(".")
+        group = frozenset({f"{kind}.x", f"{kind}.y"} if axis in ("x", "y") and not pair.architecture.turns else {key})
+        if group & done:
+            continue
+        done |= group
+        found = _optimised(spec, pair, ("maximise" if text.startswith("at least") else "minimise", key), group, progress)
+        if isinstance(found, Optimum) and found.final is not None:
+            yield Relaxation(key, text, float(found.final.values[0]), found.definition.objectives[0].measure.quantity.si)
 
 
 def _told(progress: Progress, pair: str, share: float) -> Callable[[str], None]:
@@ -296,35 +346,39 @@ def search(spec: Specification, pair: Pair, progress: Callable[[str], None] | No
     >>> search(scanner(), pair).architecture
     'carriages'
     """
-    text = draw(pair.architecture, spec, pair.actuator)
-    study_file = study_text(pair.architecture, spec, pair.actuator, "stage.toml")
+    found = _optimised(spec, pair, specified_goal(pair.architecture, spec), frozenset(), progress)
+    if isinstance(found, str):
+        return FailedPair(pair.architecture.name, pair.actuator.name, None, {}, found)
+    return _failed(pair, found) if found.final is None else _answer(spec, pair, found, found.final)
+
+
+def _optimised(
+    spec: Specification, pair: Pair, goal: tuple[str, str], without: frozenset[str], progress: Callable[[str], None] | None
+) -> Optimum | str:
+    """The optimum of a pair for a goal, `without` some requirements; the reason where it cannot be drawn or analysed."""
     try:
         with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "stage.toml").write_text(text, encoding="utf-8")
-            study = loads_study(study_file, where=f"{folder}/study.toml", folder=Path(folder))
-            problem = load_optimisation(study)
-            found = optimise(study, problem, progress)
+            (Path(folder) / DESIGN).write_text(draw(pair.architecture, spec, pair.actuator, without), encoding="utf-8")
+            study = loads_study(study_text(pair.architecture, spec, pair.actuator, goal), where=f"{folder}/study.toml", folder=Path(folder))
+            return optimise(study, load_optimisation(study), progress)
     except DesignError as error:
-        return FailedPair(pair.architecture.name, pair.actuator.name, None, (), str(error))
-    if found.final is None:
-        return _failed(pair, found)
-    values = values_of(study, found.final.shares)
-    return _answer(spec, pair, found, found.final, (write_optimum(text, study, problem, values), study_file))
+        return str(error)
 
 
 def _failed(pair: Pair, found: Optimum) -> FailedPair:
     names = (pair.architecture.name, pair.actuator.name)
     if not found.contradictions:
-        return FailedPair(*names, None, (), found.failure)
+        return FailedPair(*names, None, {}, found.failure)
     first = found.contradictions[0]
-    return FailedPair(*names, first.violation, tuple(f"{each.key} {each.text}" for each in first.limits))
+    return FailedPair(*names, first.violation, {each.key: each.text for each in first.limits})
 
 
-def _answer(spec: Specification, pair: Pair, found: Optimum, point: Point, texts: tuple[str, str]) -> Answer:
+def _answer(spec: Specification, pair: Pair, found: Optimum, point: Point) -> Answer:
     limits = found.design(point).limits
     first = next((each.value for each in limits if each.measure == "frequency.1"), None)
     coil = pair.actuator.kind == "voice_coil"
     used = None if coil or first is None else max(bounds.efficiency(first, *each, spec.masses) for each in _groups(spec, pair))
+    text = write_optimum(draw(pair.architecture, spec, pair.actuator), found.study, found.definition, values_of(found.study, point.shares))
     return Answer(
         pair.architecture.name,
         pair.actuator.name,
@@ -336,8 +390,9 @@ def _answer(spec: Specification, pair: Pair, found: Optimum, point: Point, texts
         found.agreeing,
         len(found.starts),
         found.evaluated,
-        design=texts[0],
-        study=texts[1],
+        tuple(map(str, check(loads(text)))),
+        design=text,
+        study=found.study.text,
     )
 
 

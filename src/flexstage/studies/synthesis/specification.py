@@ -195,7 +195,7 @@ def loads_specification(text: str, *, where: str = "text") -> Specification:
     try:
         found = record_from(Specification, raw, FORMAT, tagged=False)
         if found.catalogue is not None:
-            found = replace(found, catalogue=str(Path(where).parent / found.catalogue))
+            found = replace(found, catalogue=str((Path(where).parent / found.catalogue).resolve()))
         require([*_findings(found), *actuator_findings(found, where)])
     except DesignError as error:
         raise DesignError(with_lines(error.findings, text, where)) from None
