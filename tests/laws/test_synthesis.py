@@ -16,7 +16,7 @@ from flexstage.base.finding import DesignError
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.studies.synthesis import bounds
 from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
-from flexstage.studies.synthesis.search import Answer, FailedPair, Pair, design, search
+from flexstage.studies.synthesis.search import Answer, CandidatePair, FailedPair, design, search
 from flexstage.studies.synthesis.specification import Specification, loads_specification
 from tests.conftest import FULL
 
@@ -160,6 +160,25 @@ def test_heavier_carriages_do_not_raise_the_frequency() -> None:
         before = found
 
 
+@pytest.mark.parametrize("name", ["parallelogram", "xy-stage", "hexapod", "double-triangle", "voice-coil-xy"])
+def test_the_first_unwanted_frequency_interlaces(name: str) -> None:
+    """With n motions held, the lowest frequency is between the first and the n + 1st of the free stage."""
+    stage = fs.case(name)
+    bench = bench_of(stage)
+    unwanted = measure(stage, "frequency.unwanted", "here")
+    found, free = float(unwanted.kind.value(bench, unwanted)), bench.modes.frequencies
+    assert free[0] * (1.0 - 1e-9) <= found <= free[len(bench.command)] * (1.0 + 1e-9)
+
+
+def test_named_numbers_are_measures() -> None:
+    stage = fs.case("parallelogram")
+    number = measure(stage, "numbers.inset", "here")
+    assert float(number.kind.value(bench_of(stage), number)) == pytest.approx(6.5e-3)
+    assert number.quantity.shown == "mm"
+    with pytest.raises(DesignError, match=r"numbers\.leaf_length"):
+        measure(stage, "numbers.leaf_lenth", "here")
+
+
 def test_a_relaxed_value_gives_an_answer() -> None:
     """The box is too short for the stack; with the length that the search names there is a stage."""
     text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ x = "20 um" }').replace('"PSt 1000/10/150 VS18"', '"PiezoDrive SA050536"')
@@ -170,7 +189,7 @@ def test_a_relaxed_value_gives_an_answer() -> None:
     (relaxed,) = found.failed[0].relaxed
     assert relaxed.measure == "envelope.x"
     box = replace(hard.box, size=(1.001 * relaxed.value, *hard.box.size[1:]))
-    pair = Pair(architectures()["guide"], catalogue_actuators(hard)["piezo"][0])
+    pair = CandidatePair(architectures()["guide"], catalogue_actuators(hard)["piezo"][0])
     assert isinstance(search(replace(hard, box=box), pair), Answer)
     assert isinstance(search(replace(hard, box=replace(box, size=(0.99 * relaxed.value, *box.size[1:]))), pair), FailedPair)
 

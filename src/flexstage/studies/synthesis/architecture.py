@@ -102,7 +102,7 @@ def architectures() -> dict[str, Architecture]:
 
 
 @dataclass(frozen=True, eq=False)
-class Actuator:
+class CatalogueActuator:
     """An actuator of the catalogue: its entry's `name`, its `part`, and the section's `kind`."""
 
     name: str
@@ -131,7 +131,7 @@ class Actuator:
         return float(part.force_constant * min(limits))
 
 
-def catalogue_actuators(spec: Specification, where: str = "spec") -> dict[str, list[Actuator]]:
+def catalogue_actuators(spec: Specification, where: str = "spec") -> dict[str, list[CatalogueActuator]]:
     """Return the actuators of the catalogue that a specification allows, by kind, in the order of their names.
 
     >>> from flexstage.studies.synthesis.example import scanner
@@ -140,19 +140,21 @@ def catalogue_actuators(spec: Specification, where: str = "spec") -> dict[str, l
     """
     known = catalogue_of(spec.catalogue, where)
     kinds = {each.value for each in spec.actuators.kinds}
-    found: dict[str, list[Actuator]] = {kind: [] for kind in sorted(kinds)}
+    found: dict[str, list[CatalogueActuator]] = {kind: [] for kind in sorted(kinds)}
     for section in known.sections:
         if section.key != "parts" or section.kind not in kinds:
             continue
         for name in sorted(section.entries):
             if spec.actuators.like is None or name in spec.actuators.like:
-                found[str(section.kind)].append(Actuator(name, str(section.kind), _entry(spec, "parts", name, kind=str(section.kind))))
+                found[str(section.kind)].append(
+                    CatalogueActuator(name, str(section.kind), _entry(spec, "parts", name, kind=str(section.kind)))
+                )
     return found
 
 
-def _entry(spec: Specification, section: str, like: str, **more: str) -> Any:
+def _entry(spec: Specification, section: str, like: str, kind: str | None = None) -> Any:
     """An entry of the catalogue as a material or part of a stage."""
-    tree = {"format": "flexstage 1", "name": "a", section: {"entry": {"like": like, **more}}}
+    tree = {"format": "flexstage 1", "name": "a", section: {"entry": {"like": like} if kind is None else {"like": like, "kind": kind}}}
     if spec.catalogue is not None:
         tree["catalogue"] = spec.catalogue
     return getattr(mechanism_from(tree), section)["entry"]
@@ -168,7 +170,7 @@ def turned_axes(architecture: Architecture, spec: Specification) -> Array:
     return _TURNS[next(iter(spec.displacements))] if architecture.turns else np.eye(3)
 
 
-def scope(architecture: Architecture, spec: Specification, actuator: Actuator) -> dict[str, Amount]:
+def scope(architecture: Architecture, spec: Specification, actuator: CatalogueActuator) -> dict[str, Amount]:
     """Return the numbers that formulas of an architecture may use, in its frame."""
     turn = np.abs(turned_axes(architecture, spec))
     box, size = turn @ np.array(spec.box.size), turn @ np.array(spec.payload.size or (0.02, 0.02, 0.01))
@@ -262,7 +264,7 @@ def _mm(value: float) -> str:
     return show(float(value), quantity_of_dimension(_LENGTH, "mm"), digits=_DIGITS)
 
 
-def draw(architecture: Architecture, spec: Specification, actuator: Actuator, without: frozenset[str] = frozenset()) -> str:
+def draw(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, without: frozenset[str] = frozenset()) -> str:
     """Return the design file's text of an architecture for a specification, with the start values of the numbers that are searched.
 
     Requirements `without` are left out.
@@ -326,7 +328,7 @@ def specified_goal(architecture: Architecture, spec: Specification) -> tuple[str
     return way, measure_key(architecture, spec, key)
 
 
-def study_text(architecture: Architecture, spec: Specification, actuator: Actuator, goal: tuple[str, str]) -> str:
+def study_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, goal: tuple[str, str]) -> str:
     """Return the study that searches a design of an architecture: its variables, and the goal, a direction and a measure."""
     lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', "", "[variables]"]
     for each in variables(architecture, scope(architecture, spec, actuator)):

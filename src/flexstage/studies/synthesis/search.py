@@ -27,8 +27,8 @@ from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.synthesis import bounds
 from flexstage.studies.synthesis.architecture import (
     DESIGN,
-    Actuator,
     Architecture,
+    CatalogueActuator,
     catalogue_actuators,
     draw,
     find_architectures,
@@ -67,11 +67,11 @@ class Shortfall:
 
 
 @dataclass(frozen=True)
-class Pair:
+class CandidatePair:
     """An architecture with an actuator."""
 
     architecture: Architecture
-    actuator: Actuator
+    actuator: CatalogueActuator
 
     @property
     def name(self) -> str:
@@ -184,7 +184,9 @@ def design(specification: Specification, architectures: tuple[str, ...] = (), pr
     (True, {'frequency'})
     """
     known = catalogue_actuators(specification)
-    pairs = [Pair(each, actuator) for each in find_architectures(specification, architectures) for actuator in known.get(each.kind, ())]
+    pairs = [
+        CandidatePair(each, actuator) for each in find_architectures(specification, architectures) for actuator in known.get(each.kind, ())
+    ]
     screened = [(pair, list(shortfalls(specification, pair))) for pair in pairs]
     open_pairs = sorted((pair for pair, faults in screened if not faults), key=lambda pair: (_demand(specification, pair), pair.name))
     results: list[Answer | FailedPair] = []
@@ -207,7 +209,7 @@ def design(specification: Specification, architectures: tuple[str, ...] = (), pr
 
 
 def _with_relaxations(
-    spec: Specification, pairs: Sequence[Pair], results: list[Answer | FailedPair], progress: Progress | None
+    spec: Specification, pairs: Sequence[CandidatePair], results: list[Answer | FailedPair], progress: Progress | None
 ) -> list[Answer | FailedPair]:
     """The failed pairs, those with the least violations with relaxed values."""
     failed = [(each, pair) for each, pair in zip(results, pairs, strict=True) if isinstance(each, FailedPair)]
@@ -219,7 +221,9 @@ def _with_relaxations(
     return found
 
 
-def relaxations(spec: Specification, pair: Pair, failed: FailedPair, progress: Callable[[str], None] | None = None) -> Iterator[Relaxation]:
+def relaxations(
+    spec: Specification, pair: CandidatePair, failed: FailedPair, progress: Callable[[str], None] | None = None
+) -> Iterator[Relaxation]:
     """Yield the best value of each contradicting requirement with the others kept; those along x and y are relaxed together."""
     done = set[str]()
     for key, text in failed.requirements.items():
@@ -237,7 +241,7 @@ def _told(progress: Progress, pair: str, share: float) -> Callable[[str], None]:
     return lambda text: progress(f"{pair}: {text}", share)
 
 
-def _energy(pair: Pair) -> float | None:
+def _energy(pair: CandidatePair) -> float | None:
     """Stroke energy of all actuators of a pair [J]; `None` of coils."""
     actuator = pair.actuator
     if actuator.kind == "voice_coil":
@@ -245,7 +249,7 @@ def _energy(pair: Pair) -> float | None:
     return bounds.stroke_energy(actuator.stroke, actuator.stiffness, pair.architecture.count)
 
 
-def _groups(spec: Specification, pair: Pair) -> list[tuple[float, dict[str, float]]]:
+def _groups(spec: Specification, pair: CandidatePair) -> list[tuple[float, dict[str, float]]]:
     """Energies of actuators [J] with the displacements that they reach at once: of each axis on its own, or of all together."""
     energy, moved = _energy(pair) or math.inf, spec.displacements
     if pair.architecture.own:
@@ -253,19 +257,19 @@ def _groups(spec: Specification, pair: Pair) -> list[tuple[float, dict[str, floa
     return [(energy, moved)] if spec.together else [(energy, {axis: value}) for axis, value in moved.items()]
 
 
-def _demand(spec: Specification, pair: Pair) -> float:
+def _demand(spec: Specification, pair: CandidatePair) -> float:
     """Required energy as a share of that of the actuators; the least demanding pairs are searched first."""
     frequency = required_frequency(spec)
     return 0.0 if frequency is None else max(bounds.efficiency(frequency, *each, spec.masses) for each in _groups(spec, pair))
 
 
-def shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
+def shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Shortfall]:
     """Yield the bounds that a pair cannot meet.
 
     >>> from flexstage.studies.synthesis.architecture import architectures
     >>> from flexstage.studies.synthesis.example import scanner
     >>> spec = scanner()
-    >>> pairs = [Pair(architectures()["carriages"], each) for each in catalogue_actuators(spec)["piezo"]]
+    >>> pairs = [CandidatePair(architectures()["carriages"], each) for each in catalogue_actuators(spec)["piezo"]]
     >>> [next(shortfalls(spec, each), None) is None for each in pairs]
     [True, True, False, False, False, False]
     """
@@ -278,7 +282,7 @@ def shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
     yield from _leaf_shortfalls(spec, pair)
 
 
-def _energy_shortfalls(spec: Specification, pair: Pair, frequency: float) -> Iterator[Shortfall]:
+def _energy_shortfalls(spec: Specification, pair: CandidatePair, frequency: float) -> Iterator[Shortfall]:
     for energy, moved in _groups(spec, pair):
         best = bounds.frequency_bound(energy, moved, spec.masses)
         if best < frequency:
@@ -291,7 +295,7 @@ def _energy_shortfalls(spec: Specification, pair: Pair, frequency: float) -> Ite
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
 
 
-def _force_shortfalls(spec: Specification, pair: Pair, frequency: float) -> Iterator[Shortfall]:
+def _force_shortfalls(spec: Specification, pair: CandidatePair, frequency: float) -> Iterator[Shortfall]:
     source = bounds.ForceSource(pair.actuator.force, float(pair.actuator.part.mass), pair.actuator.stroke, pair.architecture.count)
     for axis, value in spec.displacements.items():
         if axis.startswith("r"):
@@ -302,7 +306,7 @@ def _force_shortfalls(spec: Specification, pair: Pair, frequency: float) -> Iter
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
 
 
-def _stroke_shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
+def _stroke_shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Shortfall]:
     stroke, moved = pair.actuator.stroke, spec.displacements
     if pair.architecture.direct:
         for axis, value in moved.items():
@@ -316,7 +320,7 @@ def _stroke_shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
             yield Shortfall("motion.z", moved["z"] * stroke / least, moved["z"], "m", reason)
 
 
-def _leaf_shortfalls(spec: Specification, pair: Pair) -> Iterator[Shortfall]:
+def _leaf_shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Shortfall]:
     rule = pair.architecture.leaf
     if rule is None:
         return
@@ -337,12 +341,12 @@ def _safety(spec: Specification) -> float:
     return float(text.removeprefix("at least "))
 
 
-def search(spec: Specification, pair: Pair, progress: Callable[[str], None] | None = None) -> Answer | FailedPair:
+def search(spec: Specification, pair: CandidatePair, progress: Callable[[str], None] | None = None) -> Answer | FailedPair:
     """Optimise one pair; an architecture that cannot be drawn or analysed is a failed pair with its reason.
 
     >>> from flexstage.studies.synthesis.architecture import architectures
     >>> from flexstage.studies.synthesis.example import scanner
-    >>> pair = Pair(architectures()["carriages"], catalogue_actuators(scanner())["piezo"][0])
+    >>> pair = CandidatePair(architectures()["carriages"], catalogue_actuators(scanner())["piezo"][0])
     >>> search(scanner(), pair).architecture
     'carriages'
     """
@@ -353,7 +357,7 @@ def search(spec: Specification, pair: Pair, progress: Callable[[str], None] | No
 
 
 def _optimised(
-    spec: Specification, pair: Pair, goal: tuple[str, str], without: frozenset[str], progress: Callable[[str], None] | None
+    spec: Specification, pair: CandidatePair, goal: tuple[str, str], without: frozenset[str], progress: Callable[[str], None] | None
 ) -> Optimum | str:
     """The optimum of a pair for a goal, `without` some requirements; the reason where it cannot be drawn or analysed."""
     try:
@@ -365,7 +369,7 @@ def _optimised(
         return str(error)
 
 
-def _failed(pair: Pair, found: Optimum) -> FailedPair:
+def _failed(pair: CandidatePair, found: Optimum) -> FailedPair:
     names = (pair.architecture.name, pair.actuator.name)
     if not found.contradictions:
         return FailedPair(*names, None, {}, found.failure)
@@ -373,7 +377,7 @@ def _failed(pair: Pair, found: Optimum) -> FailedPair:
     return FailedPair(*names, first.violation, {each.key: each.text for each in first.limits})
 
 
-def _answer(spec: Specification, pair: Pair, found: Optimum, point: Point) -> Answer:
+def _answer(spec: Specification, pair: CandidatePair, found: Optimum, point: Point) -> Answer:
     limits = found.design(point).limits
     first = next((each.value for each in limits if each.measure == "frequency.1"), None)
     coil = pair.actuator.kind == "voice_coil"
