@@ -180,6 +180,7 @@ leaf = { address = ["parts.leaf.width"], from = "40 mm", to = "0.06 m", levels =
 [scatter]
 wire = { address = "parts.leaf.thickness", normal = "5 um", within = "9 um", independent = false }
 wear = { address = "links.left.thickness", uniform = "5 um" }
+grind = { address = "links.right.thickness", interval = ["-1 um", "5 um"] }
 """
 """Every key that a study's file may have."""
 
