@@ -189,7 +189,7 @@ def test_a_study_fits_and_is_read() -> None:
     assert fits(STUDY, study_schema())
     assert loads_study(STUDY).variables[1].step == pytest.approx(1e-3)
     assert len(load_optimisation(loads_study(STUDY)).objectives) == 2
-    assert [each.name for each in loads_tolerance(STUDY).scatters] == ["wire", "wear"]
+    assert [each.name for each in loads_tolerance(STUDY).scatters] == ["wire", "wear", "grind"]
     keys = {key for table in study_schema()["$defs"].values() for key in table["properties"]} | set(study_schema()["properties"])
     assert {key for key in keys if not re.search(rf"\b{key}\b", STUDY)} == {"design", "parameter"}
 
