@@ -29,8 +29,7 @@ SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
 
 
 class LoadRange(Result):
-    """Compression [N] of each stack over the strokes: `min_force`, `max_force`; `usage` of its maximum load, `pull` of its tension
-    limit."""
+    """Compression [N] of each stack over the strokes, with its ratios to maximum load (`usage`) and tension limit (`pull`)."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Axial forces of the stacks over all strokes",

@@ -191,8 +191,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
 
 
 def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Array:
-    """Compute the twist of a named point per ideal motion, (..., 6, f): `platform` (its reference), a point of the platform, or
-    `body.point`.
+    """Compute the twist (..., 6, f) of a named point per ideal motion: `platform` (its reference), a platform point, or `body.point`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
