@@ -79,7 +79,7 @@ def polygon(*corners: str) -> str:
         ('like = "SUS420" ', 'like = "SUS420"\nrho = "7800 kg/m^3" ', ["materials.steel.rho", "called density here"]),
         ('diameter = "1 mm"', 'd = "1 mm"', ["parts.wire.d:", "called diameter here"]),
         ('length = "30 mm" ', 'L = "30 mm" ', ["parts.wire.L:", "called length here"]),
-        ('kind = "rod"\n', "", ["parts.wire", "no kind", "notch"]),
+        ('kind = "rod"\n', "", ["parts.wire", "kind missing", "notch"]),
         ('like = "SUS420"', 'like = "SUS430"', ["materials.steel.like", '"SUS430"', "SUS420"]),
         ('part = "wire"', 'part = "wier"', ["units.leg.links.front.part", '"wier"', "wire"]),
         ('"platform"]', '"plattform"]', ["units.leg.links.front.joins", '"plattform"', "platform"]),
