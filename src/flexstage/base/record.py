@@ -132,8 +132,8 @@ class Layout:
     """Table of a result class, its `TABLE`: title, fields in order (default: all that fit a cell), head over names, notes.
 
     Fields may be paths (`requirement.key`) and `INNER`; a labelled matrix is shown by columns; fields without any value are omitted. Title
-    and notes may have attributes of the result, as `{self.point}`; for several results, the title uses the first one, and different notes
-    are listed by name. A property `notes` of the result adds notes on its values.
+    and notes may have attributes of the result, as `{self.point}`. For several results, the title uses the first one; different notes are
+    listed by name. A property `notes` of the result adds notes on its values.
     """
 
     title: str

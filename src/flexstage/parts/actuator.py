@@ -18,8 +18,8 @@ class Actuator(Elastic):
     """Part with an input of the quantity `input`.
 
     A stroke actuator (`input` a displacement) has a `free_deformation` s per unit of stroke u and the force k (dx - s u). A force actuator
-    (`input` a force or a current) exerts `wrench` per unit of input on its second face and the opposite on its first, independent of
-    motion, with all degrees of freedom free; its own stiffness is additional. Positive pushes the faces apart.
+    (`input` a force or a current) exerts `wrench` per unit of input on its second face and the opposite on its first. All its degrees of
+    freedom are free; its own stiffness is additional. Positive pushes the faces apart.
     """
 
     input: ClassVar[Quantity] = DISPLACEMENT

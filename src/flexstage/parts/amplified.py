@@ -118,11 +118,11 @@ def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
 class Amplified(BetweenFaces, ChargedActuator):
     """Amplified piezo actuator between its two faces: f = k (dx - s u).
 
-    `stroke` is the full free stroke of its output along x. `deformation` is the free deformation of the second face against the first at
-    full stroke (x, y, z, rx, ry, rz), for contracting actuators or parasitic motion (default: the stroke along x). One of `diagonal` (x, y,
-    z, rx, ry, rz), `matrix` and `compliance` is its 6x6 about its centre at constant voltage. Half of `mass` and of `inertia` is at each
-    face, about the centre. `free` are the degrees of freedom of the ideal model. `resonance` (blocked at one face, free at the other) is
-    information only: internal modes are not modelled.
+    `stroke` is the full free stroke of its output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
+    against the first at full stroke (default: the stroke along x). It describes contracting actuators and parasitic motion. One of
+    `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` is its 6x6 about its centre at constant voltage. Half of `mass` and of
+    `inertia` is at each face, about the centre. `free` are the degrees of freedom of the ideal model. `resonance` (blocked at one face,
+    free at the other) is information only: internal modes are not modelled.
     """
 
     kind: ClassVar[str] = "amplified"

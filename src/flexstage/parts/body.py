@@ -297,8 +297,8 @@ def across(vector: Vector) -> Vector:
 class Imported(Solid):
     """Imported solid: the STEP `file`, its origin at `at`, x axis along `along`, z axis along `up`.
 
-    Rigid-body models use specified values in the file's axes: the sides (`size`) and the `middle` of the bounding box, `mass`, `centre` of
-    mass and `inertia` about the centre. The solid model compares them with the file (0.1 %). `sha256`, the digest of the file's bytes,
+    Rigid-body models use specified values in the file's axes: `size` (sides) and `middle` of the bounding box, `mass`, `centre` of mass,
+    and `inertia` about the centre. The solid model compares them with the file (0.1 %). `sha256`, the digest of the file's bytes,
     identifies the version and represents the file in caches. `wall` is the thinnest wall, for the mesh (default: the shortest side). A
     relative path is from the design file. In a file with several solids, `solid` is the name or the number (`#2`). `reflected`: the mirror
     image of the file's solid across its x-z plane, with the specified middle, centre and inertia.
@@ -515,7 +515,7 @@ class Body(Description):
     solids exclude one another; a body with neither is massless. `point`: the specified mass is a point mass without inertia. `reference` is
     the reference point of its twist (default: the centre of mass, or of a massless body the mean of its joints).
 
-    `of` names another body of the stage, or the ground, that owns these solids: a lug of the platform drawn in a unit's frame, and so
+    `of` names another body of the stage, or the ground, that owns these solids. Example: a lug of the platform drawn in a unit's frame,
     placed with every instance. Such a body does not move independently: solids, mass and points belong to its owner, as do joints with
     links. It has no specified mass and no reference.
     """

@@ -21,9 +21,9 @@ from flexstage.parts.shape import INNER_MODES, Order
 class Cartwheel(Compound):
     """Cartwheel hinge about z: four leaves of `length` as spokes, two from the first body to a hub and two from it to the second.
 
-    The link's origin is the hub's centre; x points from the first body to the second and bisects both pairs; `angle` is between the leaves
-    of a pair. The leaves end on the hub's `hub_diameter`. The hub is rigid; its `hub_mass` is of a disc of this diameter and the leaves'
-    width: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
+    The link's origin is the hub's centre; x points from the first body to the second and bisects both pairs. `angle` is between the leaves
+    of a pair. The leaves end on the hub's `hub_diameter`. The hub is rigid. Its `hub_mass` is of a disc of this diameter and the leaves'
+    width b: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
     """
 
     kind: ClassVar[str] = "cartwheel"

@@ -36,8 +36,8 @@ class ComplianceMatrix(Elastic):
 
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are its ideal degrees of
     freedom. `replaces` names the drawn part of the matrix, with the shape for the solid model and the material for drift and structural
-    damping. `mass` is a point mass at the part's centre, half of it at each end, or, with `inertia` about its `centre` of mass (along the
-    link frame's axes), a rigid solid.
+    damping. `mass` is a point mass at the part's centre, half of it at each end. With `inertia` about its `centre` of mass (along the link
+    frame's axes), it is a rigid solid.
     """
 
     kind: ClassVar[str] = "compliance_matrix"

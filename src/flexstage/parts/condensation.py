@@ -36,9 +36,9 @@ MOST_MODES = 1000
 class Condensed:
     """Superelement over ports and fixed-interface modes, SI, each port's twist at its origin in its axes, ports in file order.
 
-    `stiffness` (6 (p - 1), 6 (p - 1)) is of all ports but the first, which is fixed; `squares` (m,) of the modes' angular frequencies,
-    modes mass-normalised; `inertia` (6 p + m, 6 p + m) of all coordinates; `damping` (6 (p - 1) + m, 6 (p - 1) + m) of the strained ones
-    (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are from rigid motions. `error` is the
+    `stiffness` (6 (p - 1), 6 (p - 1)) is of all ports but the first, which is fixed. `squares` (m,) are of the angular frequencies of the
+    mass-normalised modes. `inertia` (6 p + m, 6 p + m) is of all coordinates. `damping` (6 (p - 1) + m, 6 (p - 1) + m) is of the strained
+    ones (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are from rigid motions. `error` is the
     removed stiffness of rigid motions over the softest elastic one.
     """
 
@@ -265,9 +265,8 @@ def _rigid_findings(part: Superelement, at_ports: Array, in_file: Array, frames:
         return 0.0, [Finding("stiffness matrix", "no relative motion of the ports has stiffness", "Check the file")]
     if left > RIGID * softest:
         what = (
-            f"it resists rigid motions of all ports with {left:.3g} N/m (rotations over {_span(frames) * 1e3:.4g} mm), "
-            f"{left / stiffest:.2g} of its stiffest motion and {left / softest:.2g} of its softest; at most {RIGID:g} of the softest "
-            "is expected"
+            f"stiffness of rigid motions of all ports:  {left:.3g} N/m (rotations over {_span(frames) * 1e3:.4g} mm), "
+            f"{left / stiffest:.2g} of its stiffest motion and {left / softest:.2g} of its softest; at most {RIGID:g} expected"
         )
         return left / softest, [Finding("ports", what, _hint(part, at_ports, in_file, frames))]
     least = float(np.linalg.eigvalsh(at_ports[6:, 6:])[0])

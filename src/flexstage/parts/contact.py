@@ -90,7 +90,7 @@ class Contact(Elastic):
 class Hertz:
     """Hertzian contacts of a ball under the preload: `force` [N], `spot` radius a [m], `normal` and `tangential` stiffness [N/m].
 
-    `normals` (..., c, 3) of the c contacts point from the seat to the ball, `motion` (..., c, 3, 6) is the contact motion per twist of the
+    `normals` (..., c, 3) of the c contacts point from the seat to the ball. `motion` (..., c, 3, 6) is the contact motion per twist of the
     ball's centre.
     """
 
@@ -110,11 +110,11 @@ class Hertz:
 
 
 def hertz(part: Contact, material: Material) -> Hertz:
-    """Compute the contacts of a ball of radius R: a flat carries the preload F, each wall of a groove F / (2 sin h), h its half angle.
+    """Compute Hertzian contacts of a ball: a flat carries the preload F, each wall of a groove of half angle h carries F / (2 sin h).
 
-    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, a = (3 F R / (4 E*))^(1/3), k_n = 2 E* a = (6 E*^2 R F)^(1/3); without slip, the tangential
-    stiffness is k_t = 8 a G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. Isotropic materials, smooth faces, contact radius much smaller than the
-    ball.
+    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, a = (3 F R / (4 E*))^(1/3), k_n = 2 E* a = (6 E*^2 R F)^(1/3) for the radius R. Without slip,
+    the tangential stiffness is k_t = 8 a G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. Isotropic materials, smooth faces, contact radius much
+    smaller than the ball.
     Raises `DesignError` for a crystal, and without the seat's material.
     """
     ball, counter = _both(part, material)

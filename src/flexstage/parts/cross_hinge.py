@@ -21,7 +21,7 @@ class CrossHinge(Compound):
     """Cross-axis flexural pivot about z: two leaves that cross at an `angle`, each of `length` from body to body.
 
     The link's origin is the crossing, x the bisector of both leaves. `crossing` is the distance from the first body to the crossing over
-    the length (Wittrick's lambda); `spacing` the distance along z between the middle planes of adjacent leaves. With a `middle_width` it
+    the length (Wittrick's lambda). `spacing` is the distance along z between the middle planes of adjacent leaves. With a `middle_width` it
     has three leaves, symmetric about the middle: two of `width` on either side of one of that width.
     """
 

@@ -89,7 +89,7 @@ class Cross(Section):
 def cross(thickness: Number, width: Number) -> Cross:
     """Return the plus-shaped section of leaves of `thickness` and `width`.
 
-    Its shear factor is that of the energy of Jourawski's shear stress V Q(y) / (I b(y)), k = A / I^2 times the integral of Q^2 / b(y).
+    Its shear factor k is from the energy of Jourawski's shear stress V Q(y) / (I b(y)): A / I^2 times the integral of Q^2 / b(y).
     """
     half, near = 0.5 * width, 0.5 * thickness
     plain = Cross(width, width, thickness=thickness)

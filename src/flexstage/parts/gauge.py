@@ -87,7 +87,7 @@ class Combination(Instrument):
 def combine_gauges(members: Sequence[tuple[Number, Instrument]]) -> Combination:
     """Combine weighted gauges with independent errors into one.
 
-    Range sum |w_i| r_i and resolution sum |w_i| q_i (worst signs), noise density (sum w_i^2 n_i^2)^(1/2), unknown if one is; the members'
+    Range sum |w_i| r_i and resolution sum |w_i| q_i (worst signs). Noise density (sum w_i^2 n_i^2)^(1/2), unknown if one is. The members'
     bandwidth if equal.
 
     >>> pair = combine_gauges([(0.5, Gauge(range=1e-4, noise_density=3e-11)), (-0.5, Gauge(range=1e-4, noise_density=4e-11))])

@@ -35,9 +35,9 @@ class Material(Description):
     """Linear-elastic material.
 
     Isotropic: `young` [Pa], and `poisson` [-] or `shear_modulus` [Pa] (or both, which must agree). A crystal of cubic symmetry: `c11`,
-    `c12`, `c44` [Pa] instead, and `crystal`, the crystal's directions along the stage's x and z axes (default: 100 and 001). `density`
-    [kg/m^3]; optional: `expansion` [1/K], `loss_factor` [-], and limits of stress [Pa]: `yield_stress`, `fatigue_limit`,
-    `allowable_stress`, the least of which governs.
+    `c12`, `c44` [Pa] instead. `crystal` has its directions along the stage's x and z axes (default: 100 and 001). `density` [kg/m^3];
+    optional: `expansion` [1/K], `loss_factor` [-], and limits of stress [Pa]: `yield_stress`, `fatigue_limit`, `allowable_stress`; the
+    least governs.
 
     >>> Material(young=200e9, poisson=0.25, density=7750.0).shear
     80000000000.0
@@ -151,11 +151,11 @@ class Material(Description):
     def oriented(self, rotation: Array) -> Material:
         """Return the material in a part's axes (x along it, z along its width), columns of `rotation` (..., 3, 3) in the stage.
 
-        A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal: 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
-        n3^2 n1^2), strain ratio -E (S12 + J sum n^2 m^2), 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS 19 (2010)
-        229-238). Beams along x use E of x and G of the planes xy and xz, wide leaves -S13 / (S11 S33)^(1/2), for the plate modulus E / (1 -
-        nu^2). Coupling of tension or bending with shear and twist, in directions other than 100, 110 and 111, is omitted. Isotropic
-        materials are returned unchanged.
+        A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal, has 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
+        n3^2 n1^2). Its strain ratio is -E (S12 + J sum n^2 m^2), and 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS
+        19 (2010) 229-238). Beams along x use E of x and G of the planes xy and xz. Wide leaves use -S13 / (S11 S33)^(1/2) for the plate
+        modulus E / (1 - nu^2). Coupling of tension or bending with shear and twist, in directions other than 100, 110 and 111, is omitted.
+        Isotropic materials are returned unchanged.
         """
         if not self.is_cubic:
             return self

@@ -18,7 +18,7 @@ class Neck(Profiled):
     """Two-axis neck hinge: round (without `width`: `thickness` is the diameter; a toroid for a circular profile), or rectangular.
 
     A rectangular neck has `thickness` along y and `width` along z, both increased by the profile. Ideal degrees of freedom: the three
-    rotations (torsion is free although its stiffness is used: if locked, every strut would transmit a couple about its axis).
+    rotations (torsion is free although its stiffness is used; locked, it would transmit a couple).
     """
 
     kind: ClassVar[str] = "neck"

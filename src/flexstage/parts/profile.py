@@ -1,7 +1,7 @@
 """Profiles of flexure hinges: thickness of the cross-section along the hinge.
 
-A profile has the half length a of the hinge and the added height w(s) >= 0 on each side at the station s in [-1, 1], x = a s. The section's
-thickness there is t + 2 w. Stations concentrate the quadrature in the thin region.
+A profile has the half length a of the hinge and the added height w(s) >= 0 on each side. The station is s in [-1, 1], x = a s. The
+section's thickness there is t + 2 w. Stations concentrate the quadrature in the thin region.
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ class Power(_Conic):
 class Vee(Contour):
     """V-shaped profile: flanks at an `angle` to one another, rounded at the tip by a `radius`; `length` from end to end.
 
-    With e = (180 degrees - angle)/2 a flank's slope: an arc x = r sin p, w = r (1 - cos p) up to p = e, then a straight flank.
+    A flank's slope is e = (180 degrees - angle)/2. The arc is x = r sin p, w = r (1 - cos p) up to p = e, then the flank is straight.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "v")

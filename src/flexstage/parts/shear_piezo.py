@@ -34,9 +34,9 @@ from flexstage.parts.stated import Stated, point_masses
 class ShearPiezo(ChargedActuator):
     """Shear piezo actuator: a block of plates along x; its second face moves along y by the stroke u against the first.
 
-    `length` along x, `width` along y, `depth` along z. `stiffness` is along y with parallel faces, `axial_stiffness` along x: modulus E =
-    k_a L / A, shear compliance 1/k - L^3 / (12 E I_z), and so the other degrees of freedom, follow as for a uniform block. Blocked force =
-    stroke x stiffness. Half of `mass` is at each face.
+    `length` along x, `width` along y, `depth` along z. `stiffness` is along y with parallel faces, `axial_stiffness` along x. They
+    determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z); other degrees of freedom are as for a uniform
+    block. Blocked force = stroke x stiffness. Half of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"
@@ -86,7 +86,7 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def compliance(self) -> Array:
-        """Compliance (..., 6, 6) about its centre: 1/k_a along x, 1/k along y, along z as along y with other bending, L/(E I), L/(G J).
+        """Compliance (..., 6, 6) about its centre: 1/k_a along x, 1/k along y, similar along z, rotational L/(E I) and L/(G J).
 
         G follows from the shear compliance L / (k G A) with k = 5/6 (parabolic); Saint-Venant torsion. Both faces stay plane.
         """

@@ -35,11 +35,10 @@ _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS]
 class Spring(Elastic):
     """Spring along x, without a drawn shape, with specified stiffness; zero in other degrees of freedom.
 
-    One of: `stiffness` along its axis alone, `diagonal` of all six freedoms (x, y, z, rx, ry, rz), `matrix`, a whole symmetric 6x6 about
-    its centre. Any of them may be negative (magnets); only the whole stage must be stable. `free` are the free degrees of freedom of the
-    ideal model (default: all).
+    One of: `stiffness` along its axis, `diagonal` (x, y, z, rx, ry, rz), `matrix`, a symmetric 6x6 about its centre. Any of them may be
+    negative (magnets); only the whole stage must be stable. `free` are the free degrees of freedom of the ideal model (default: all).
 
-    With a `length` it pivots at both ends, so that its force stiffens it across its axis by F / L; without, it acts in one point. `preload`
+    With a `length` it pivots at both ends, so that its force stiffens it across its axis by F / L. Without, it acts in one point. `preload`
     is its initial force that pushes the ends apart (negative: pulls), or with `free_length`, k (free_length - length). It has no stroke.
     `mass` is uniform over its length.
     """

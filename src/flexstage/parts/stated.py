@@ -53,8 +53,8 @@ def halves(inertia: Array) -> Array:
 def line_mass(mass: Number, length: Number) -> Array:
     """Compute the consistent mass (..., 12, 12) of a line of uniform mass between its ends, at +-L/2 from the centre.
 
-    Linear interpolation v = (1 - s) v_a + s v_b: m/3 at each end, m/6 coupling, so that a spring fixed at one end adds a third of its mass
-    to the other.
+    Linear interpolation v = (1 - s) v_a + s v_b: m/3 at each end, m/6 coupling. A spring fixed at one end thus adds a third of its mass to
+    the other.
 
     >>> line_mass(6.0, 0.0)[0, [0, 6]].tolist()
     [2.0, 1.0]

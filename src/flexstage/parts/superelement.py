@@ -26,7 +26,8 @@ class FileUnits(Enum):
 class Port(Description):
     """Port (interface frame) of a superelement, in the part's axes: origin `at`, x along `along`, z along `up` (perpendicular to it).
 
-    Its six coordinates (x, y, z, rx, ry, rz: its twist at its origin, in its axes) are in the file's matrices from `row`, counted from 1.
+    Its six coordinates (x, y, z, rx, ry, rz) are its twist at its origin, in its axes. They are in the file's matrices from `row`, counted
+    from 1.
     """
 
     row: Annotated[int, Bound(1, 2**31)]
@@ -50,7 +51,7 @@ class Superelement(Elastic):
 
     Either `file` is a MAT or NPZ file of both (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files. A viscous
     damping matrix D is optional (`arrays`, or `damping_file`). All other coordinates are internal: nodal degrees of freedom or modal
-    amplitudes. `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass, damping): it identifies the
+    amplitudes. `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass, damping). It identifies the
     version and represents the matrices in caches. A relative path is from the design file.
 
     Internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA J. 6, 1313, 1968), which preserves statics and total

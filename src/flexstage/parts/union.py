@@ -1,9 +1,9 @@
 """Mass of the union of a body's outlines: common volumes count once.
 
 The union of solids follows by inclusion and exclusion from their intersections, each solid being its outer form minus its hole. An
-intersection is computed for prisms along one axis: blocks along any edge, extrusions along their height, cylinders along their axis; and
-for balls within their sections. Its section is a polygon clipped by half-planes, its moments are line integrals (Green's theorem): closed
-formulas, valid for batches and complex steps. Other overlaps are refused.
+intersection is computed for prisms along one axis: blocks along any edge, extrusions along their height, cylinders along their axis. It is
+also computed for balls within these sections. Its section is a polygon clipped by half-planes, its moments are line integrals (Green's
+theorem): closed formulas, valid for batches and complex steps. Other overlaps are refused.
 """
 
 from __future__ import annotations

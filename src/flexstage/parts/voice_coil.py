@@ -62,11 +62,11 @@ class CoilSide(Enum):
 class VoiceCoil(ThrustActuator):
     """Voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
 
-    `mass` is of the coil, on the body named by `coil`, `magnet_mass` of the magnet, on the other body; both at the link's centre, without
-    rotary inertia. `stiffness` is of the magnets along x (negative: unstable about the middle), `damping` of the coil (eddy currents of its
-    former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of motion along x of constant
-    `force_constant`, half to either side. `temperature_rise` is the coil's limit, through `thermal_resistance` to its surroundings; `duty`
-    is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
+    `mass` is of the coil, on the body named by `coil`, `magnet_mass` of the magnet, on the other body. Both are at the link's centre,
+    without rotary inertia. `stiffness` is of the magnets along x (negative: unstable about the middle), `damping` of the coil (eddy
+    currents of its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of motion along x of
+    constant `force_constant`, half to either side. `temperature_rise` is the coil's limit, through `thermal_resistance` to its
+    surroundings; `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
 
     Not modelled: change of R with temperature, saturation, and the current lag L/R under a voltage drive, significant above R / (2 pi L).
     """

@@ -217,7 +217,7 @@ def _ask(read: Callable[..., Any], asked: Path, size: int, *arguments: Any) -> A
     try:
         answer = CHILD.ask(read, asked.absolute(), arguments, seconds, MEMORY + _COPIES * size)
     except EOFError:
-        raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
+        raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it again") from None
     if isinstance(answer, _WrongError):
         where, what, advice = answer.args
         raise refuse(f"{path}: {where}" if where else path, what, advice)
@@ -245,7 +245,7 @@ def _answer(_line: Line, read: Callable[..., Any], path: Path, arguments: tuple[
     try:
         return read(path, *arguments)
     except MemoryError:
-        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts")
+        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it again, or in parts")
     except Exception as error:  # noqa: BLE001
         return _answer_to_error(error, path, is_mat=read is _mat)
 
@@ -260,15 +260,15 @@ def _answer_to_error(error: Exception, path: Path, *, is_mat: bool) -> _WrongErr
     said = _error_text(error)
     if is_mat:
         size = path.stat().st_size
-        advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
+        advice = "It breaks off or is damaged: copy or save it again (MAT files of version 5 cannot be read in part)"
         return _WrongError("", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
     if "truncated file" in said:
         numbers = said.partition("truncated file: ")[2].rstrip(")") or said
-        return _WrongError("", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew")
-    return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it anew")
+        return _WrongError("", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it again")
+    return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it again")
 
 
-_ELSEWHERE = "its data stand in another file", "Only the file that is named is read: copy all data into it"
+_ELSEWHERE = "its data are in another file", "Only the file that is named is read: copy all data into it"
 
 
 @contextlib.contextmanager

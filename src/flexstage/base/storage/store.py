@@ -48,7 +48,7 @@ def cache_folder() -> Path:
     try:
         place = Path(stated).expanduser().absolute() if stated else user_cache_path("flexstage", appauthor=False, opinion=False)
     except (RuntimeError, OSError) as error:
-        raise refuse(FOLDER_VARIABLE, f'the folder "{stated}" cannot be told ({error})', "Name the folder by its whole path") from None
+        raise refuse(FOLDER_VARIABLE, f'unknown folder "{stated}" ({error})', "Name the folder by its whole path") from None
     if not place.is_absolute():  # the user's home is unknown
         raise refuse(FOLDER_VARIABLE, "it is not set, and the user's home is not known", "Name a folder for what may be computed again")
     return place

@@ -28,8 +28,8 @@ _LONGEST = 60
 def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
     """Parse a text with a unit and return its SI value.
 
-    A ratio is a bare number or has "%". Raises `DesignError` at `where` for a missing or unknown unit, a wrong dimension (both are named),
-    a temperature scale with an offset, or a number that is not finite.
+    A ratio is a bare number or has "%". Raises `DesignError` at `where` for a missing or unknown unit, a wrong dimension, a temperature
+    scale with an offset, or a number that is not finite.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH, STIFFNESS
     >>> parse("1.54 mm", LENGTH), parse("17 N/um", STIFFNESS), parse("5 %", RATIO)
