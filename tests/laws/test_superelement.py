@@ -383,7 +383,7 @@ WRONG = {
     ),
     "a frame turned": (
         lambda body: broken(body, ports={**body.ports, "top": replace(body.ports["top"], along=(1.0, 0.0, 0.0), up=(0.0, 0.0, 1.0))}),
-        "it resists rigid motions of all ports",
+        "stiffness of rigid motions of all ports",
     ),
 }
 
