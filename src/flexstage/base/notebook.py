@@ -11,7 +11,7 @@ from flexstage.base.lazy import Late
 class RenderHook:
     """Display modules, registered at import of `flexstage` and loaded at first display.
 
-    `tables` has `to_html(value)`, `views` has `view(mechanism, *, motion)`.
+    `tables` has `to_html(value)` and `to_text(value)`, `views` has `view(mechanism, *, motion)`.
     """
 
     tables: Late
@@ -19,7 +19,7 @@ class RenderHook:
 
 
 class InNotebook:
-    """Value with a notebook display by the renderer.
+    """A value that prints in at most 25 lines, and that notebooks show as tables or a picture.
 
     >>> import numpy as np
     >>> from flexstage.base.labelled import Matrix
@@ -29,6 +29,9 @@ class InNotebook:
 
     def _repr_html_(self) -> str:
         return RenderHook.tables.to_html(self)
+
+    def __str__(self) -> str:
+        return RenderHook.tables.to_text(self)
 
 
 @dataclass_transform(eq_default=False, frozen_default=True, field_specifiers=(field,))
