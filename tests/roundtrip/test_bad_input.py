@@ -215,7 +215,7 @@ def test_entries_of_a_catalogue_of_ones_own(tmp_path: Path) -> None:
     assert stage.sources["lot"] == "tensile test"
     for name, text, words in (
         ("no.toml", CATALOGUE, "there is no such file"),
-        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: this is no section of entries by name. The nearest name is coils."),
+        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: not a section of entries by name. The nearest name is coils."),
         ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: this is no section"),
         ("lab.toml", CATALOGUE.replace("ours", "theirs"), 'the catalogue has no "ours"'),
         ("lab.toml", CATALOGUE.replace("71.2 GPa", "71.2 N"), "materials.al.young"),
