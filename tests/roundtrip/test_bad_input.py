@@ -216,7 +216,7 @@ def test_entries_of_a_catalogue_of_ones_own(tmp_path: Path) -> None:
     for name, text, words in (
         ("no.toml", CATALOGUE, "there is no such file"),
         ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: not a section of entries by name. The nearest name is coils."),
-        ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: this is no section"),
+        ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: not a section"),
         ("lab.toml", CATALOGUE.replace("ours", "theirs"), 'the catalogue has no "ours"'),
         ("lab.toml", CATALOGUE.replace("71.2 GPa", "71.2 N"), "materials.al.young"),
     ):
