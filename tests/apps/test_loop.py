@@ -225,8 +225,8 @@ def test_the_header_is_an_output_too(guide: Command, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        ("0,0\n0.01,nan", "row 2 is no number"),
-        ("0,0\n0.01,1e400", "row 2 is no number"),
+        ("0,0\n0.01,nan", "row 2 is not finite"),
+        ("0,0\n0.01,1e400", "row 2 is not finite"),
         ("0,0\n0.01,\u202e1", "\\u202e1"),
         ("0,0\n1e300,1", "1e+304 samples"),
     ],
@@ -296,7 +296,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--rate", "5"), ("--rate", "without a unit")),
     (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest found with PI", "Ask for")),
     (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
-    (("--amplitude", "x=1mm"), ("trajectory x", "leaves what the strokes reach", "Shrink the trajectory")),
+    (("--amplitude", "x=1mm"), ("trajectory x", "beyond the strokes from", "Scale the trajectory")),
     (("--amplitude", "z=1um"), ("trajectory z: the stage has no motion z", "x")),
     (("--amplitude", "q=1um"), ("--amplitude q=1um", "rx, ry, rz, x, y, z")),
     (("--trajectory", "raster"), ("the stage has no motion y",)),
@@ -310,7 +310,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
     (
         ("--fea", "--at", "platform.x=1 mm", "--model", "mapped"),
-        ("--fea: finite elements are of the stage as drawn", "--fea: --model mapped asks for another"),
+        ("--fea: finite elements need the nominal stage", "--fea: contradicts --model mapped"),
     ),
     (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
     (("--controller", "pidd"), ("--controller", "pi, pid, resonant, lqg, none")),
@@ -318,7 +318,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--seconds", "-1"), ("seconds", "greater than 0")),
     (("--seconds", "1e9"), ("seconds", "samples")),
     (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),
-    (("--export", "path.csv"), ("--export path.csv", "nothing but the trajectory itself")),
+    (("--export", "path.csv"), ("--export path.csv", "the command equals the trajectory")),
     (("--export", "path.csv", "--tracking", "inverse"), ("--export path.csv", "several paths")),
     (("--setup", "nowhere.toml"), ("nowhere.toml", "no such file")),
     (("--json", "nowhere/loop.json"), ("nowhere/loop.json cannot be written",)),

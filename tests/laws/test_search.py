@@ -351,7 +351,7 @@ def simulated_steps(given: ResolvedSetup, tuned: Tuning, offset: float) -> list[
 def test_a_plant_that_is_unstable_by_itself_is_refused():
     plant = integral_loop().plant
     pushed = replace(plant, system=replace(plant.system, A=plant.system.A + 400.0 * np.eye(len(plant.system.A))))
-    with pytest.raises(DesignError, match="the stage by itself is unstable: it grows by"):
+    with pytest.raises(DesignError, match="the stage is unstable in open loop: it grows by"):
         find(pushed, platform_loops(plant.coordinates), specified())
 
 

@@ -1,4 +1,4 @@
-"""The command `loop`: the control loop of a stage, from a commanded pose to nanometres, and its controller out."""
+"""The command `loop`: analyse the control loop of a stage and export its controller."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
 
 def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Identification | None:
-    """The modes of the records, all of one test."""
+    """Modes identified from the records, all of one test."""
     if not record:
         return None
     reader = texts.options()
@@ -126,7 +126,7 @@ def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Id
 
 
 def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model: Model | None) -> CommandResult:
-    """Controllers side by side."""
+    """Result of several controllers on one plant."""
     return CommandResult(
         stands.mechanism,
         lambda: rivals,
@@ -139,7 +139,7 @@ def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model
 
 
 def _closed(found: LoopStudy, stands: Footing, model: Model | None) -> CommandResult:
-    """One loop."""
+    """Result of one loop."""
     return CommandResult(
         stands.mechanism,
         lambda: stands.body(found) if stands.operating_point is not None else found,
@@ -151,29 +151,23 @@ def _closed(found: LoopStudy, stands: Footing, model: Model | None) -> CommandRe
 
 
 def _fea_findings(where: Place, model: Model | None) -> Iterator[Finding]:
-    """What asks for another model than finite elements of the drawn stage."""
+    """Options that contradict a finite-element plant of the nominal stage."""
     if where:
-        yield Finding(
-            "--fea", f"finite elements are of the stage as drawn, and {where.options} brings it elsewhere", "Leave one of them out"
-        )
+        yield Finding("--fea", f"finite elements need the nominal stage (got {where.options})", "Omit one of them")
     if model is not None:
-        yield Finding("--fea", f"--model {model.value} asks for another model of the plant", "Leave one of them out")
+        yield Finding("--fea", f"contradicts --model {model.value}, another plant model", "Omit one of them")
 
 
 def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> None:
-    """Refuse what belongs to one controller."""
+    """Refuse options that belong to one controller."""
     said = {
         **written,
         "controller.kind": asked.controller.kind is not None,
         **{f"controller.{name}": True for name in asked.controller.stated if getattr(asked.controller, name) is not None},
         "controller.loops": bool(asked.controller.loops),
     }
-    advice = "Leave it out of a comparison, which tunes each kind itself"
-    require(
-        Finding(name, "it belongs to one controller, and --compare lays several side by side", advice)
-        for name, is_said in said.items()
-        if is_said
-    )
+    advice = "Omit it: a comparison tunes each kind itself"
+    require(Finding(name, "belongs to one controller, but --compare uses several", advice) for name, is_said in said.items() if is_said)
 
 
 def _write_example(design: Path, example: Path) -> None:

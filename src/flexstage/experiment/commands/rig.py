@@ -74,7 +74,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 
     White noise in the actuators, through amplifier, stage, gauges with noise, drift and steps, anti-alias filter and sampling.
 
-    Same seed, same file. `flexstage identify` finds the modes in it as in any record.
+    Equal seeds give equal files. `flexstage identify` finds the modes in it as in any record.
     """
     mechanism = open_design(design, changes, [("--output", output)])
     values = Values()
@@ -106,8 +106,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, actuators: list[str] | None) -> NoiseDrive:
     amount = None if drive_rms is None else first_that_parses(drive_rms, {"stroke": DISPLACEMENT, "voltage": VOLTAGE})
     if drive_rms is not None and amount is None:
-        what = f'found "{drive_rms}", which is no displacement or voltage'
-        values.findings.append(Finding("--drive-rms", what, 'Write for example "1 um" or "5 V"'))
+        what = f'no displacement or voltage (got "{drive_rms}")'
+        values.findings.append(Finding("--drive-rms", what, 'Use for example "1 um" or "5 V"'))
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(
         **dict([amount] if amount else []),
