@@ -20,7 +20,7 @@ class Bend:
     """Deflections of a straight part by the offset and the rotation of its second end, its first one fixed, along its length from 0 to 1.
 
     `values` (n, 5) at `shares` (n,): the share (of elongation and twist), deflections for a unit offset and a unit rotation, and the
-    slopes of both: v(s) = offset N(s) + turn L M(s), with N(1) = M'(1) = 1, all others of N, M and slopes 0 at the ends.
+    slopes of both. Deflection: v(s) = offset N(s) + turn L M(s), with N(1) = M'(1) = 1, all others of N, M and slopes 0 at the ends.
     """
 
     shares: Array

@@ -53,8 +53,8 @@ _LOADED = ", small motions about the loaded stage"
 class StageData:
     """Data of a viewer for a stage: its mesh, its parts by number, and its motions.
 
-    `bodies` are in the order of twists, the ground first; `size` is the diagonal of the box around everything and `centre` (3,) its middle
-    [m]; `bones` are the bodies with their reference points. `links` are the part numbers of a motion's strain energy. `notes` state the
+    `bodies` are in the order of twists, the ground first. `size` is the diagonal of the box around everything and `centre` (3,) its middle
+    [m]. `bones` are the bodies with their reference points. `links` are the part numbers of a motion's strain energy. `notes` state the
     simplifications of the picture and their reasons.
     """
 

@@ -20,7 +20,7 @@ class Mesh:
     """Vertices, triangles and edges of a stage in its frame.
 
     A vertex has a position in `points` (v, 3) [m], a `part` (v,), a `carrier` (v,) and a `station` (v,). A carrier is a piece between two
-    bodies: `bodies` (c, 2) by number, 0 the ground; `ends` (c, 2, 3) [m] at the bodies; both bodies are equal for a rigid piece. A
+    bodies: `bodies` (c, 2) by number, 0 the ground; `ends` (c, 2, 3) [m] at the bodies. Both bodies are equal for a rigid piece. A
     station is a row of `stations` (s, 5): see `Bend`. `triangles` (t, 3) are counter-clockwise from outside, `edges` (e, 2) sharp.
     """
 

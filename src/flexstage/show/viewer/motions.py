@@ -75,7 +75,7 @@ class Course:
     """Large displacements through the points of a path, or a small motion about one.
 
     `poses` (f, rows, 6) are displacement and rotation vector of each body about its reference, the ground's first, then of the nodes along
-    the bending pieces; `frames` (f,) the points of the path that they belong to. `shape` (rows, 6) is a small motion about the only
+    the bending pieces. `frames` (f,) are the points of the path that they belong to. `shape` (rows, 6) is a small motion about the only
     pose. `curves` begin with the drive. `beyond` are the part numbers beyond a limit at every point, `said` the reason.
     """
 

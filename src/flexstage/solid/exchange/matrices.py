@@ -43,7 +43,7 @@ def export_superelement(
     The solid is that of the body or link of this `name`, with all parts of the same component (see `fea.component`). Its ports are the end
     faces of links to other components: the ground, rigid bodies, stacks, other units. Each remains plane and is named after the link
     (`left`, or `left-platform` if the link ends on two of them). Its frame is at the middle of the face, in the axes of the drawing:
-    those of the stage, or of the unit. Stiffness `K` and mass `M` are in SI over the ports' twists, then inner coordinates: the
+    those of the stage, or of the unit. Stiffness `K` and mass `M` are in SI over the ports' twists, then inner coordinates. These are the
     `reduction.modes` lowest modes with all ports fixed, and the static response to wrenches on its bodies and to the inertia of the ports'
     motions, which replaces the omitted modes. Raises `DesignError` as `model` does; for an unknown name; for fewer than two ports; and for
     a stack, because the matrices have no stroke.

@@ -72,7 +72,7 @@ class SolidHinge(DistinctHinge, InNotebook):
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
         """Whether each direct compliance can be separated from that of the adjacent stubs: they have at most 90 % of the whole.
 
-        In torsion a wide notch is stiffer than its stubs, which are subtracted as beams with restrained warping (Vlasov): a small
+        In torsion a wide notch is stiffer than its stubs, which are subtracted as beams with restrained warping (Vlasov). This is a small
         difference of two larger numbers, for which beams are too inaccurate.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))

@@ -105,7 +105,7 @@ def model(
     Names of inputs and outputs are those of `lumped`. Every component is drawn, meshed and reduced once, in a separate process, and
     stored in the `cache` (`None`: not used). `progress` receives the step, the fraction and the seconds left; `memory` [bytes] limits the
     planned memory (absent: the free memory of the machine). Raises `DesignError` for links without a shape, for gaps, overlaps and slivers
-    of outlines, all by name before meshing; for failed meshes; for insufficient memory or time; and for stages with rigid-body motions.
+    of outlines, all by name before meshing. Also for failed meshes, insufficient memory or time, and stages with rigid-body motions.
     Warnings report problems of the cache.
 
     >>> from flexstage.cases.parallelogram import parallelogram

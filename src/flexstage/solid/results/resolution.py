@@ -18,7 +18,7 @@ from flexstage.solid.results.read import coarsen
 _Result = TypeVar("_Result")
 HIGHEST = 4
 _LEFT, _MATTERS = 0.5, 0.1
-"""Expected share of a component's change remaining at the next order, on the shipped stage 0.05 to 0.45; and the smallest relevant
+"""Expected share of a component's change remaining at the next order, on the shipped stage 0.05 to 0.45. And the smallest relevant
 change of a figure over the largest one of any component."""
 _AT_ORDER_TWO = 0.25
 """Order one is inaccurate: on hinges and blocks order two had a tenth of its error, never a quarter."""
@@ -69,7 +69,7 @@ def converge(
 ) -> Converged[_Result]:
     """Compute at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and the coarser one.
 
-    With `sizes`, the unknowns of the components of a result, only components with a large share of the change get a higher order;
+    With `sizes`, the unknowns of the components of a result, only components with a large share of the change get a higher order.
     `measure` computes the figures without the other parts of a result.
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))

@@ -46,7 +46,7 @@ class BodyCost:
 class SolidStage(InNotebook):
     """A stage by the solid model.
 
-    `statics` and `modes` as for any model; `stress` at every link and body is the highest over all corners of the strokes from zero,
+    `statics` and `modes` are as for any model. `stress` at every link and body is the highest over all corners of the strokes from zero,
     permanent load included (`None` without strokes or with too many corners). `worst` (N,) are the coordinates at the corner of the
     weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, rigid in other models, in each mode.
     """

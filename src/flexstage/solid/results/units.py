@@ -37,7 +37,7 @@ class SolidUnit(UnitOutput, InNotebook):
     """One isolated unit by the solid model.
 
     With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the full one with `outputs` (k,) [m],
-    linear; `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
+    linear. `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -23,7 +23,7 @@ def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded 
     """The best feasible neighbour on the variables' steps; `None` if no variable has a step.
 
     All neighbours (of more than 12 variables those nearest), ranked by the linear model of objective and limits, are evaluated in order
-    until one is feasible; then single steps of every variable are tried while they improve it. Variables without a step are constant.
+    until one is feasible. Then single steps of every variable are tried while they improve it. Variables without a step are constant.
     """
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:

@@ -84,7 +84,7 @@ class Point:
 class Values:
     """Evaluates `measures` of a study's designs.
 
-    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except of map_error and opening: those
+    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except of map_error and opening. Those
     are computed from real corners and outlines, with central differences of a thousandth of the range in both directions, where
     rounding and curvature have equal effects.
     """

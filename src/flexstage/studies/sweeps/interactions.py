@@ -38,7 +38,7 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
     """Shares (d, d, r) of the variance of responses (n, r) that two of the variables (n, d) explain beyond each alone; NaN on the diagonal.
 
     Analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and subtracted;
-    the cells of two variables then explain a part of the residual, less its expectation: SS_ij - (b_i - 1)(b_j - 1) MSE over the
+    the cells of two variables then explain a part of the residual, less its expectation. SS_ij - (b_i - 1)(b_j - 1) MSE over the
     total sum of squares. For a complete grid it is exact, else effects within bins are missing: true shares are larger. NaN for
     too few designs, or a constant response.
 
@@ -122,9 +122,9 @@ def _explained_sum(first: Array, second: Array, rest: Array) -> Array:
 def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
     """Second-order Sobol indices (d, d, r) and their largest standard error (r,) from the blocks (2 d + 2, n, r) of Saltelli's plan.
 
-    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j, by products of designs that share x_i and x_j only: A with column j of B, and B with
-    column i of A (Saltelli, Computer Physics Communications 145 (2002) 280); the mean is subtracted first, both orders are averaged. Errors
-    are those of independent rows, and smaller for a Sobol sequence.
+    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j. Estimated by products of designs that share x_i and x_j only: A with column j of B,
+    and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280); the mean is subtracted first, both orders are
+    averaged. Errors are those of independent rows, and smaller for a Sobol sequence.
 
     >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response
     [nan]

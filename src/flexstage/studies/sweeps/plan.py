@@ -26,8 +26,8 @@ class Sampling(Enum):
 class Plan:
     """A sampling of `count` designs with its `seed`; a grid has `levels` instead, one number for each variable.
 
-    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with that variable's column from B: count
-    (d + 2) designs in all, for Sobol indices (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs`
+    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with that variable's column from B. These are
+    count (d + 2) designs in all, for Sobol indices (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs`
     also B with each column from A: count (2 d + 2) designs, for second-order indices.
     """
 

@@ -28,8 +28,8 @@ _SINGULAR = 1e9
 class Command:
     """Command of the nominal stage: nominal numbers known to a controller.
 
-    `gains` (n, f): strokes for a unit of each of the `coordinates` of the platform at `point`, with corrected lost motion, from R_a;
-    `strokes` (n,): full strokes of the stacks, proportional to a voltage; `reference` (3,): position of the point; `sensing` (6, g):
+    `gains` (n, f): strokes for a unit of each of the `coordinates` of the platform at `point`, with corrected lost motion, from R_a.
+    `strokes` (n,): full strokes of the stacks, proportional to a voltage; `reference` (3,): position of the point. `sensing` (6, g):
     R_s^-1, pose from gauges there, absent if the gauges do not determine it.
     """
 
@@ -122,7 +122,7 @@ def _quantity(row: str, column: str) -> Quantity:
 def poses(bench: Bench, asked: Command) -> tuple[Array, ...]:
     """Motion per command (...) of a real stage, or a batch, entry by entry with the names of `pose_measures`.
 
-    Open: the voltages for the nominal stage, x = X T (stroke / nominal stroke) C e_j, where C corrects the nominal stage's
+    Open: the voltages for the nominal stage, x = X T (stroke / nominal stroke) C e_j. C corrects the nominal stage's
     lost motion and T = dx/da is the real one's elastic gain. Held: a controller regulates the pose measured with the nominal R_s^-1, so
     that the real one is x = (R_s^-1 R_s,real)^-1 e_j. Both at the nominal point. For the nominal stage both are the identity (open, with
     fewer than six motions: with its own parasitic motions).

@@ -26,8 +26,8 @@ _GAP = 1e-6
 class Slopes:
     """Values (r,) of the nominal design, derivatives (r, d) by the deviations in SI, and the mask of `smooth` (r,) responses.
 
-    Other responses (the lowest of two equal frequencies, the largest of three equal losses) change to one side for any deviation;
-    their derivatives are those of one of the equal values, of equal frequencies those of their mean.
+    Other responses (the lowest of two equal frequencies, the largest of three equal losses) change to one side for any deviation.
+    Their derivatives are those of one of the equal values, of equal frequencies those of their mean.
     """
 
     values: Array

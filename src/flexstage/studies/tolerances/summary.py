@@ -51,7 +51,7 @@ class Spread:
 class ResponseSpread(Asked):
     """A response over the samples with values [SI].
 
-    Its `percentiles`; the deviation by first-order propagation, and its validity (`linear`); by entry of `[scatter]` the shares
+    Its `percentiles`; the deviation by first-order propagation, and its validity (`linear`). By entry of `[scatter]` the shares
     of its variance, by derivatives and by the samples of one entry alone; its derivatives by every number with scatter.
     """
 

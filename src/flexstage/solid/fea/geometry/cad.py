@@ -82,7 +82,7 @@ def mirrors_of(component: Component) -> Mirrors:
     """The planes across y and z about which a component of one medium is symmetric and can be cut.
 
     Every joint, link and body must be its own mirror image. Leaves are not cut: their flat elements would become flatter, or fewer across
-    the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes are not cut either, except plates: their
+    the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes are not cut either, except plates. Their
     curvature sets the size of elements, and the mesher divides arcs less finely than circles, which would reduce their mass.
 
     >>> from flexstage.solid.fea.meshing.bar import bar

@@ -34,8 +34,8 @@ _NEAR = 2e-3
 def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Finding, ...]:
     """Errors that prevent the outlines of a stage from forming the described solids; empty for a sound stage.
 
-    For links with a shape, each end face must be entirely on the outline of its body (a body without outline is not checked, the ground
-    only if it is drawn in the link's unit). Outlines of one body must form one solid, joined over faces. All others must have a distance
+    For links with a shape, each end face must be entirely on the outline of its body. A body without outline is not checked, the ground
+    only if it is drawn in the link's unit. Outlines of one body must form one solid, joined over faces. All others must have a distance
     above `clearance` [m] (contact, within 1 um, is an error). No step, gap, edge or face may be much smaller than the local geometry.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -1,6 +1,6 @@
 """A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
 
-The hinge is between rigid outer faces, with a stub of the block on each side with a root; the stubs are then subtracted as beams,
+The hinge is between rigid outer faces, with a stub of the block on each side with a root. The stubs are then subtracted as beams,
 so that the compliance of the roots remains with the hinge. An end without a root is rigid at the end of its arcs. A symmetric hinge is
 cut at its planes: the six motions are even or odd about each, so a quarter with matching constraints suffices.
 """
@@ -136,7 +136,7 @@ def hinge_compliance(
     none for other hinges). `stub` [m] is the length of a stub: by default the hinge's full height, or five times its `grain` at a block
     wider than itself.
 
-    Linear elasticity; the stubs' outer faces remain plane. The depth of the root is a convention: C_x depends on the stub's
+    Linear elasticity; the stubs' outer faces remain plane. The depth of the root is a convention. C_x depends on the stub's
     length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
     without a shape, for a batch, and if no mesh can be made. `told` is called for every mesh and solve.
 

@@ -2,7 +2,7 @@
 
 If a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline. Half-circle arcs are drawn
 completely: they end perpendicular to the stub's flank, without tangent faces. At a rigid face, to which an arc would be tangent, the
-arc ends at its true end with a blunted wedge: it carries almost no load, and could not be meshed. All other
+arc ends at its true end with a blunted wedge. It carries almost no load, and could not be meshed. All other
 hinges end on a stub wider than themselves on all sides.
 """
 

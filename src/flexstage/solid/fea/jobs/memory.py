@@ -1,6 +1,6 @@
 """Memory of a reduction: estimated from the mesh before assembly, compared with the free memory of the machine.
 
-Degrees of freedom and matrix entries are counted exactly from the mesh; the factor is measured: between 20 and 70 bytes an entry
+Degrees of freedom and matrix entries are counted exactly from the mesh. The factor is measured: between 20 and 70 bytes an entry
 of the matrix on hinges, levers, plates and stacks of 2,000 to 440,000 degrees of freedom at orders two to four.
 """
 
@@ -96,7 +96,7 @@ def needed(counts: Counts, order: int, columns: int) -> float:
     """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
 
     One side of a symmetric component has a factor for every kind of motion, as many as mirror images. Within -15 and +40 % of
-    measurements at orders two to four with modes; without modes only one factor exists at a time, and the estimate is up to 70 % too high.
+    measurements at orders two to four with modes. Without modes only one factor exists at a time, and the estimate is up to 70 % too high.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030

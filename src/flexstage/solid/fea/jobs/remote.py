@@ -33,7 +33,7 @@ _MESHED = frozenset(Stage) - {Stage.STARTING, Stage.DRAWING, Stage.MESHING}
 class Limits:
     """Resources of jobs.
 
-    `memory` in all [bytes] (absent: the free memory of the machine), `seconds` each, `mesh_seconds` for one attempt at a mesh, and
+    `memory` in all [bytes] (absent: the free memory of the machine), `seconds` each, `mesh_seconds` for one attempt at a mesh. There are
     `workers` at once (absent: one for each core, at most two).
     """
 

@@ -19,7 +19,7 @@ class Accuracy(CheckedFields):
     """Requirements of an adaptive solve.
 
     `error` is the required relative error, `freedoms` the maximum number of DOFs. On the first mesh the order rises from the first
-    to the second of `orders`; then it is constant, and elements shrink by `shrink` from mesh to mesh, `meshes` in all.
+    to the second of `orders`. Then it is constant, and elements shrink by `shrink` from mesh to mesh, `meshes` in all.
     """
 
     error: float = 0.01

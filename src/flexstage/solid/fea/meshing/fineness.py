@@ -13,7 +13,7 @@ ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), 
 
 NOTCH_MIDDLE, NOTCH_REACH = 0.7, 1.6
 """Element size in the middle plane of a notch over that on the faces of other hinges, and its extent on both sides, in geometric
-means of radius and thickness: the strain gradient is largest there."""
+means of radius and thickness. The strain gradient is largest there."""
 WARPS = 12
 """Linear and quadratic motions of an interface face, without rigid ones."""
 

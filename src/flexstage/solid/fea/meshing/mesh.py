@@ -29,7 +29,7 @@ _CURVATURE = 1.5
 _NECK = 0.5
 """Share of a link's length, about its middle, with curved elements."""
 _CORE, _AWAY = 1.0 / 6.0, 0.1
-"""Elements within a round neck with an arc, on circles of half its radius about its axis: size in the middle over that on its faces,
+"""Elements within a round neck with an arc, on circles of half its radius about its axis. Size in the middle over that on its faces,
 and its growth with the distance. From the surface alone the mesher would make flat elements, twice as wide."""
 _ROUND = 0.85
 """Size of elements within round necks relative to those of the isolated neck, as its faces are coarser."""
@@ -42,7 +42,7 @@ _ROOT = 2.0 / 15.0
 _HELD = 0.9
 """Share of its length within which a round neck's inside is graded."""
 _PRINT = 1.0 / 3.0
-"""Elements under another component's end face over the root of its area, for a neck of one: a small face presses a root into the body."""
+"""Elements under another component's end face over the root of its area, for a neck of one. A small face needs a fine root."""
 _MOST = 3e5
 """Largest number of elements in one link."""
 _WITHIN = 1e-6
@@ -74,7 +74,7 @@ def mesh_component(
     """Draw and mesh a component; with `by_symmetry` only the positive side of a symmetric one.
 
     Elements near the ends of arcs that curving inverts get straight sides. If the mesher fails, or an element of a neck is inverted, sizes
-    and grading are varied, a few times; `first` is the first attempt, after a crash of an earlier one. Drawings and meshes are cached:
+    and grading are varied, a few times. `first` is the first attempt, after a crash of an earlier one. Drawings and meshes are cached:
     another order only needs a new curving. Raises `DesignError` if all attempts fail.
 
     >>> from flexstage.solid.fea.meshing.bar import bar

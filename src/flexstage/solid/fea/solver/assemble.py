@@ -96,7 +96,7 @@ def linear_model(
 ) -> LinearModel:
     """Join reduced components to a model.
 
-    Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), warps of their faces
+    Coordinates: twists of rigid bodies and of the joints between elastic components (stage axes, at the joint). Then warps of their faces
     (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` if the joined stage has a rigid-body motion.
     """
     model = _join(mechanism, assembly, parts)

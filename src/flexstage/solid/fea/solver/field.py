@@ -406,8 +406,8 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
     """Rows (6, n) of the mean twist about a point, in the field's axes, of the surface elements `faces` (mask) around it.
 
-    The weight of the surface is exp(-(d^2 - d0^2) / reach^2), d its distance from the point and d0 the smallest: on a flat face a bell
-    around the foot of the point, on a ball about its centre uniform.
+    The weight of the surface is exp(-(d^2 - d0^2) / reach^2), d its distance from the point and d0 the smallest. On a flat face
+    it is a bell around the foot of the point, on a ball about its centre uniform.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -37,7 +37,7 @@ class End:
 class Tie:
     """Contribution of a part without a shape: stiffness over its `strain`, `inertia` over the motion of its ends and inner coordinates.
 
-    `carried` (r, 6) is that motion when everything moves rigidly about the stage's origin; `passed` (w, s) maps the forces (s,) of its
+    `carried` (r, 6) is that motion when everything moves rigidly about the stage's origin. `passed` (w, s) maps the forces (s,) of its
     strain to the wrenches that are outputs; viscous `damping` over the strain.
     """
 

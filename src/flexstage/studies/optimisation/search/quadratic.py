@@ -23,7 +23,7 @@ class Solution:
 def quadratic(hessian: Array, linear: Array, normals: Array, bounds: Array) -> Solution:
     """Minimise x^T H x / 2 + h^T x subject to A x <= b, for H positive definite and feasible constraints.
 
-    From the free minimiser, in y = L^T x, the constraints require the shortest step z with G z >= g, which is the residual of a
+    From the free minimiser, in y = L^T x, the constraints require the shortest step z with G z >= g. It is the residual of a
     non-negative least-squares problem: min |E u - e| over u >= 0 with E = [G^T; g^T] and e = (0, ..., 0, 1), z = G^T u / (1 - g^T u)
     (Lawson & Hanson, Solving Least Squares Problems, 1974, chapter 23).
 

@@ -22,7 +22,7 @@ class Spectrum:
     """k modes of one design: `frequencies` (k,) ascending [Hz] and `slopes` (n, k, k) [Hz per unit of each variable].
 
     Eigenvalues of diag(f) + sum_p d_p slopes_p are the frequencies after a small change d, to first order, for distinct,
-    repeated or crossing modes: slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k)
+    repeated or crossing modes. slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k)
     and `weighted` = M shapes identify the modes of two designs.
     """
 

@@ -1,7 +1,7 @@
 """Platform frequencies of a study's designs, thousands a second: planned once for a study, then evaluated for any designs.
 
-The method of a design, and whether descriptions are fitted, depend only on the study: not on the division of its designs into
-pieces, nor on the number of remaining designs.
+The method of a design, and whether descriptions are fitted, depend only on the study. They do not depend on the division into pieces,
+nor on the number of remaining designs.
 """
 
 from __future__ import annotations
