@@ -130,7 +130,7 @@ def _threads() -> Row:
     try:
         counts = json.loads(_run(_THREADS).stdout)
     except (ValueError, subprocess.TimeoutExpired):
-        return Row("BLAS", "not examined", wanted, Verdict.NOTE, "mend the packages above first")
+        return Row("BLAS", "not examined", wanted, Verdict.NOTE, "correct the packages above first")
     most = max(counts, default=1)
     remedy = "" if most == 1 else "if sweeps are slow on a busy machine: export OPENBLAS_NUM_THREADS=1"
     return Row("BLAS", f"{most} thread{'s' * (most > 1)}", wanted, Verdict.NOTE if remedy else Verdict.GOOD, remedy)
@@ -182,4 +182,6 @@ def _run_self_test(self_test: Callable[[], Row] | None) -> Row:
     try:
         return self_test() if self_test else Row("self-test", "none", "none", Verdict.NOTE)
     except Exception as error:  # noqa: BLE001 (the doctor reports all errors)
-        return Row("self-test", f"{type(error).__name__}: {error}", "passes", Verdict.BAD, "mend the rows above; else report this as a bug")
+        return Row(
+            "self-test", f"{type(error).__name__}: {error}", "passes", Verdict.BAD, "correct the rows above; else report this as a bug"
+        )

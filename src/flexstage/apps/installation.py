@@ -20,7 +20,7 @@ def consult() -> int:
     rows = doctor.examine(Path.cwd(), self_test)
     _print_rows(rows)
     bad = [row for row in rows if row.verdict is Verdict.BAD]
-    print_result("The installation is sound." if not bad else f"{len(bad)} thing{'s' * (len(bad) > 1)} to mend.")
+    print_result("The installation is sound." if not bad else f"{len(bad)} problem{'s' * (len(bad) > 1)} found.")
     return BAD_INPUT if bad else DONE
 
 

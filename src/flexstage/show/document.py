@@ -21,8 +21,8 @@ from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
 
 FORMAT = "flexstage result 3"
-_UNLUMPED = "deflection under dead load needs the lumped model"
-_UNSORTED = "it is told of platforms with fewer than six ideal motions, loaded at the point of theirs that is read"
+_UNLUMPED = "deflection under permanent load needs the lumped model"
+_UNSORTED = "requires a platform with fewer than six ideal motions, loaded at its output point"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
 """Fields of an analysis whose document is named after their command."""
 

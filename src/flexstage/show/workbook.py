@@ -53,7 +53,7 @@ def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
 def _write(sheet: Any, grid: Grid, head: Any, unit: Any) -> None:
     if len(grid.rows) + 2 > _MOST_ROWS or len(grid.heads) > _MOST_COLUMNS:
         size = f"{len(grid.rows)} rows and {len(grid.heads)} columns"
-        raise refuse(sheet.name, f"{size} are more than a sheet of a workbook holds", "Write CSV files: --csv FOLDER")
+        raise refuse(sheet.name, f"{size} exceed the limits of a worksheet", "Write CSV files: --csv FOLDER")
     for row, line in enumerate((grid.heads, grid.units)):
         for column, text in enumerate(line):
             if text:

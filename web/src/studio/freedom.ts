@@ -38,7 +38,7 @@ export class FreedomPane {
       ...list("Free", said.free, (each) => this.point([each])),
       ...list("Locked", said.locked, (each) => this.point([each])),
       ...told("What locks it", said.blocked),
-      ...told("Redundant constraints: they stress the stage where parts do not fit exactly", said.redundant),
+      ...told("Redundant constraints: they stress the stage if parts do not fit exactly", said.redundant),
       ...told("Idle: motions that move neither platform nor stroke", said.idle),
       h("button", { type: "button", click: () => this.picture(this.said) }, "show all arrows"),
     );

@@ -220,7 +220,7 @@ def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str
 
 def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> str:
     """The stage with its modes about an operating point, as a page."""
-    return view_of(mechanism, modes_at_data(mechanism, there, found, "about where it stands"), "state 1").html
+    return view_of(mechanism, modes_at_data(mechanism, there, found, "about the operating point"), "state 1").html
 
 
 @command()

@@ -182,7 +182,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
     if least is None or least.found is None:
         raise refuse("--post-buckling", "the stage does not buckle", "Leave it out, or name a larger load")
     if least.found.state.held:
-        what = f"the least factor is that of {least.load} at {least.place}, where force holds the stage"
+        what = f"the lowest factor is that of {least.load} at {least.place}, with prescribed coordinates"
         raise refuse("--post-buckling", what, "Leave out --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
     path = follow(least.found, grows, side=1.0 if branch is BranchSide.ALONG else -1.0, points=points)
@@ -204,7 +204,7 @@ def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase
 def _unanswered(found: CaseFactors) -> Iterator[Finding]:
     """Reasons for a missing result: the stage has no load, or the only requested case has no factor."""
     if not found.cases:
-        what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
+        what = "no weight, no specified forces and no paths with loads"
         yield Finding("stage", what, 'Name a load: --scale-load "platform.fz=-20 N"')
     elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
         yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another operating point")
@@ -240,15 +240,15 @@ def misalign(
     quantity = ANGLE if axis.startswith("r") else LENGTH
     wanted = parse(amount, quantity, where="--amount") if amount else (1e-3 if quantity is ANGLE else 1e-4)
     if not wanted:
-        raise refuse("--amount", "a misalignment of zero does nothing", 'Use for example --amount "1 mrad"')
+        raise refuse("--amount", "must not be zero", 'Use for example --amount "1 mrad"')
     if not instance:
         told = misalignments(mechanism, (axis,) if rotation or translation else COMPONENTS[3:], size=wanted)
         if told.worst is None:
-            raise refuse("stage", "no instance of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
+            raise refuse("stage", "no instance of a unit and no link joins the ground", "Add a link to the ground")
         return CommandResult(
             mechanism,
             lambda: told,
-            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --instance NAME."],
+            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. Details: --instance NAME."],
             partial(misalignments_report, mechanism, told),
             warnings=told.warnings,
         )
@@ -259,10 +259,10 @@ def misalign(
 
 def _axis(rotation: str, translation: str) -> str:
     if rotation and translation:
-        raise refuse("--translation", f"it is rotated about {rotation} already", "Leave out --rotation, or --translation")
+        raise refuse("--translation", f"given together with --rotation {rotation}", "Leave out --rotation, or --translation")
     option, axis = ("--translation", translation) if translation else ("--rotation", rotation or "y")
     if axis not in COMPONENTS[:3]:
-        raise refuse(option, f'"{axis}" is no axis', "Write x, y or z")
+        raise refuse(option, f'must be x, y or z (got "{axis}")', "Use one of them")
     return axis if translation else f"r{axis}"
 
 

@@ -30,7 +30,7 @@ def studio(
         print_note(f"Studio of {design}: {url}")
         print_note("Ctrl+C ends it.")
         if browser and not webbrowser.open(url):
-            print_note("No browser was found: open the address yourself.")
+            print_note("No browser was found: open this address.")
 
     try:
         asyncio.run(run(design, port, started))

@@ -60,7 +60,7 @@ def problem(finding: Finding) -> Problem:
 
 def failure(task: str, error: Exception) -> Problem:
     """An error of the program itself."""
-    what = f"flexstage failed at it, and that is its fault, not your design's: {type(error).__name__}: {error}"
+    what = f"flexstage failed, and not because of your design: {type(error).__name__}: {error}"
     return Problem(task, what, "Save the design, and report it with this message")
 
 
@@ -74,7 +74,7 @@ def work(line: Line, task: str, *arguments: Any) -> Outcome:
     except DesignError as error:
         value, problems = None, _located(error, arguments)
     except MemoryError:
-        value, problems = None, (Problem(task, "there is not enough memory for it", "Close other programs, or make the design smaller"),)
+        value, problems = None, (Problem(task, "not enough memory", "Close other programs, or make the design smaller"),)
     except Exception as error:  # noqa: BLE001 (a failed task must not stop the others)
         traceback.print_exc()
         value, problems = None, (failure(task, error),)

@@ -17,7 +17,7 @@ from flexstage.apps.studio.engine import Outcome, problem, work
 from flexstage.apps.studio.protocol import Problem
 from flexstage.base.processes.jobs import Heard, Word, Worker
 
-_AGAIN = "The process that computes is started anew; ask again, and report it if this happens twice"
+_AGAIN = "The computing process is restarted; try again, and report a second failure"
 
 
 class Urgency(IntEnum):

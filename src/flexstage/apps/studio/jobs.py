@@ -69,14 +69,14 @@ class Jobs:
         if len(running) >= _MOST:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
         if request.command in _STUDIES and request.study is None:
-            raise refuse(request.command, "it needs a study: what varies, and what is wanted", "Write one, see docs/studies.md")
+            raise refuse(request.command, "study missing", "Write one, see docs/studies.md")
         if (request.record or request.command == "identify") and not (request.record and self._is_file(request.record)):
-            raise refuse(request.command, "there is no such record", "Name a file, from the folder of the design")
+            raise refuse(request.command, "record not found", "Name a file, relative to the folder of the design")
         for option in request.options:
             if "\0" in option:
                 raise refuse(request.command, "an option has a null character", "Leave it out")
             if option.partition("=")[0] in _WRITING:
-                raise refuse(request.command, f"{option} writes a file, which is the studio's to choose", "Leave it out")
+                raise refuse(request.command, f"the studio sets {option}", "Leave it out")
         number = len(self._jobs) + 1
         job = _Job(number, request, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None))
         self._jobs[number] = job
@@ -95,7 +95,7 @@ class Jobs:
         """End a job; refused for an unknown number."""
         job = self._jobs.get(number)
         if job is None:
-            raise refuse(f"job {number}", "there is none of this number", "Look at the list")
+            raise refuse(f"job {number}", "unknown job", "Choose one of the list")
         if job.state.state in ("waits", "runs"):
             job.state = replace(job.state, state="cancelled", text="cancelled")
             if job.process is not None:
@@ -233,7 +233,7 @@ def _study(text: str, design: Path, name: str) -> str:
     try:
         document = tomlkit.parse(text)
     except TOMLKitError as error:
-        raise refuse("study", f"this is not TOML: {error}", "Mend that line") from None
+        raise refuse("study", f"this is not TOML: {error}", "Correct that line") from None
     document["design"] = design.name
     document.setdefault("name", name)
     return tomlkit.dumps(document)

@@ -90,7 +90,7 @@ def card(text: str, file: str, to: int, name: str) -> Card:
         tuple(_facts(link)),
         verified,
         problems_of(told, text, file),
-        attempt.missing | ({} if verified else {"verified": "no finite elements are stored of it: verify the design"}),
+        attempt.missing | ({} if verified else {"verified": "no stored finite elements: verify the design"}),
     )
 
 
@@ -190,9 +190,9 @@ def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
         for column, name in enumerate(found.coordinates)
     )
     redundant = tuple(Fact(f"redundant {number}", ", ".join(each.constraints)) for number, each in enumerate(found.redundant, start=1))
-    idle = tuple(Fact(", ".join(each.bodies), f"moves by itself in {', '.join(each.links)}") for each in found.idle)
+    idle = tuple(Fact(", ".join(each.bodies), f"moves freely in {', '.join(each.links)}") for each in found.idle)
     blocked = tuple(
-        Fact(name, f"held by {', '.join(each.against)}; free {(' and ' if each.together else ' or ').join(each.free)}")
+        Fact(name, f"locked by {', '.join(each.against)}; free {(' and ' if each.together else ' or ').join(each.free)}")
         for name, each in found.blocked.items()
     )
     locked = tuple(_locked(found.motion, known))
@@ -213,7 +213,7 @@ def _gap_text(distance: float) -> str:
 
 def _six(link: PlacedLink | None, what: str) -> Matrix:
     if link is None or not isinstance(link.part, Elastic):
-        raise refuse("link", "it has no 6x6 of its own", "Ask for its stage")
+        raise refuse("link", "no 6x6", "Use the matrices of the stage")
     twist, wrench = tuple(COMPONENTS), tuple(FORCES)
     if what == "compliance":
         return matrix(
@@ -226,7 +226,7 @@ def _stress(known: Bench, name: str) -> tuple[float | None, float | None, float 
     """Peak stress over all strokes, its limit, and the safety."""
     found = known.stress
     if name not in found.links:
-        raise refuse(name, "its stress is not known: it has no section to check", "Stacks have limits of load instead")
+        raise refuse(name, "stress unknown without a section", "For stacks, use the load limits")
     index = found.links.index(name)
     return tuple(finite(np.ravel(each)[index]) for each in (found.peak, found.allowed, found.safety))  # type: ignore[return-value]
 
@@ -254,7 +254,7 @@ class Bearing:
         model = known.model
         self._known = sized_links(known.assembly)
         if not self._known:
-            raise refuse("stress", "no link has a section to check", "Stress is that of notches, necks, leaves and rods")
+            raise refuse("stress", "no link has a section", "Use notches, necks, leaves or rods")
         self.links = tuple(self._known)
         self.inputs = model.actuators
         outputs = tuple(f"{link}.{force}" for link in self.links for force in FORCES)
@@ -394,4 +394,4 @@ def _locked(motion_: Array, known: Bench) -> Iterator[Screw]:
     reference = first_design(known.assembly.bodies["platform"].reference, 1)
     for number, twist in enumerate(basis[:, rank:].T, start=1):
         held = np.where(np.abs(twist) > 1e-12, twist, 0.0) / scale
-        yield _screw(f"held {number}", held, reference, known.kinematics.first_length, ())
+        yield _screw(f"locked {number}", held, reference, known.kinematics.first_length, ())

@@ -84,7 +84,7 @@ class Studio:
                 self._server = await self._listen(self._last_port) if self._last_port and not self._port else None
             self._server = self._server or await self._listen(self._port)
         except OSError as error:
-            what = f"it cannot be listened at: {os.strerror(error.errno) if error.errno else error}"
+            what = f"cannot listen on this port: {os.strerror(error.errno) if error.errno else error}"
             raise refuse(f"--port {self._port}", what, "Choose another one, or leave it out") from None
         self._port = next(iter(self._server.sockets)).getsockname()[1]
         self.session.journal = Journal(self.session.stored.path, self._port, self.token)
@@ -119,11 +119,11 @@ class Studio:
         """The answer to a GET: a file of the table, a report, the socket (none), or a refusal."""
         hosts = {f"{HOST}:{self._port}", f"localhost:{self._port}"}
         if request.headers.get_all("Host") not in [[host] for host in hosts]:
-            return _answer(http.HTTPStatus.FORBIDDEN, "This server answers its own computer only.\n")
+            return _answer(http.HTTPStatus.FORBIDDEN, "This server accepts its own computer only.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
             if request.headers.get_all("Origin") not in [[f"http://{host}"] for host in hosts]:
-                return _answer(http.HTTPStatus.FORBIDDEN, "This socket answers the studio's own page only.\n")
+                return _answer(http.HTTPStatus.FORBIDDEN, "This socket accepts the page of the studio only.\n")
             if len(self._pages) >= _PAGES:
                 return _answer(http.HTTPStatus.SERVICE_UNAVAILABLE, f"{_PAGES} windows are open; close one.\n")
             return None
@@ -132,7 +132,7 @@ class Studio:
         if path == "/favicon.ico":
             return _answer(http.HTTPStatus.NO_CONTENT, b"")
         if path not in _FILES:
-            return _answer(http.HTTPStatus.NOT_FOUND, "There is no such page.\n")
+            return _answer(http.HTTPStatus.NOT_FOUND, "Page not found.\n")
         file, kind = _FILES[path]
         policy = _POLICY.format(host=request.headers["Host"])
         return _answer(http.HTTPStatus.OK, file.read_bytes(), kind, policy)
@@ -140,7 +140,7 @@ class Studio:
     def _report(self, name: str) -> Response:
         found = self.session.jobs.reports.get(name)
         if found is None or not found.is_file():
-            return _answer(http.HTTPStatus.NOT_FOUND, "There is no such report.\n")
+            return _answer(http.HTTPStatus.NOT_FOUND, "Report not found.\n")
         return _answer(http.HTTPStatus.OK, found.read_bytes(), "text/html; charset=utf-8", _REPORT_POLICY)
 
     # --- the socket ---

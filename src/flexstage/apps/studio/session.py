@@ -90,7 +90,7 @@ class Session:
 
     async def open(self) -> None:
         """Read the text and compute its results."""
-        self._push(say.Engine("starts", "The process that computes starts", None))
+        self._push(say.Engine("starts", "The computing process starts", None))
         await self._read()
 
     async def close(self) -> None:
@@ -171,7 +171,7 @@ class Session:
         """Restore an unsaved text of an ended studio, or discard it; this studio then protects a restored one."""
         draft = self.drafts.get(request.draft)
         if draft is None:
-            raise refuse(request.draft, "there is no unsaved text of this name", "Reload the page")
+            raise refuse(request.draft, "unknown unsaved text", "Reload the page")
         if request.keep:
             self.history = replace(self.history, pins={**draft.pins, **self.history.pins})
             self._take(self.history.change(draft.text, page))
@@ -183,7 +183,7 @@ class Session:
 
     async def _pin(self, request: say.Pin, *_: Any) -> None:
         if request.keep and request.name not in self.history.pins and len(self.history.pins) >= 12:
-            raise refuse(request.name, "twelve designs are pinned already", "Let one go first")
+            raise refuse(request.name, "twelve designs are pinned already", "Remove one first")
         self.history = self.history.pin(request.name, keep=request.keep)
         self._protect()
         self._push_state()
@@ -438,7 +438,7 @@ class Session:
         self._push_state()
 
     def _died(self, words: str) -> None:
-        self._push(say.Engine("ended", f"The process that computes ended and is started anew: {words}", None))
+        self._push(say.Engine("ended", f"The computing process ended and is restarted: {words}", None))
 
     # --- requests to the processes ---
 

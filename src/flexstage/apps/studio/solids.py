@@ -24,7 +24,7 @@ from flexstage.solid.results.modes import fea_modes_from_cache
 from flexstage.solid.show.sections import fea_motions
 from flexstage.spatial.frame import COMPONENTS
 
-_ABSENT = "The cache holds no finite elements of this stage as it is: Verify computes them"
+_ABSENT = "The cache contains no finite elements of this stage: Verify computes them"
 _VERIFIED = 0.01
 """Default accuracy of `verify`."""
 

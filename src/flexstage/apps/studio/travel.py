@@ -51,7 +51,7 @@ def _stated(mechanism: Mechanism, name: str) -> Course:
 def _own(model: Nonlinear, asked: Travel) -> Course:
     """A path defined by the page."""
     if not 2 <= asked.points <= _MOST:
-        raise refuse("points", f"{asked.points} points were asked for", f"Ask for 2 to {_MOST}")
+        raise refuse("points", f"must be 2 to {_MOST} points (got {asked.points})", "Change the number of points")
     quantity = quantity_of(model, asked.drive)
     low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((asked.start, "from"), (asked.end, "to")))
     return Course(asked.drive, np.linspace(low, high, asked.points), loads_of(model, asked.loads), (), 1.0)

@@ -58,8 +58,8 @@ def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
     for address, text in mechanism.formulas.items():
         if address not in result.formulas:
             numbers = " or ".join(f"numbers.{name}" for name in sorted(parse_expression(text).names))
-            advice = f"; to move all that depends on it, set {numbers}" if numbers else ""
-            print_note(f'note: {address} is set by itself, its formula "{text}" is not kept{advice}')
+            advice = f"; to change all dependent values, set {numbers}" if numbers else ""
+            print_note(f'note: the value of {address} replaces its formula "{text}"{advice}')
     return _valid(result, changes) if changes else mechanism
 
 
@@ -93,5 +93,5 @@ def known_point(model: LinearModel, name: str, option: str) -> str:
     outputs = {channel.name for channel in model.outputs}
     places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
     if name not in places:
-        raise refuse(option, f"there is no body or point {name}", suggest_nearest(name, places))
+        raise refuse(option, f"unknown body or point {name}", suggest_nearest(name, places))
     return name

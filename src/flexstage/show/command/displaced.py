@@ -74,7 +74,7 @@ class Place:
             for name in fixed
             if "=" in name
         )
-        require(Finding(f"--fixed {name}", "it is given twice", "Say it once") for name in dict.fromkeys(fixed) if fixed.count(name) > 1)
+        require(Finding(f"--fixed {name}", "given twice", "Give it once") for name in dict.fromkeys(fixed) if fixed.count(name) > 1)
         return fixed
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
@@ -138,7 +138,7 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
     if not asked:
         return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
-        raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the operating point")
+        raise refuse(asked.options, f"the {model.value} model has no operating points", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
     there = operating_points.operating_point(
         mechanism, asked.brought(known), loads=loads_of(known, asked.load or ()), fixed=asked.locked, temperature=asked.warmth
@@ -147,12 +147,12 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
 
 
 def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
-    yield matrix_table("Sag under weight, loads and heat, from as drawn", found.sag)
+    yield matrix_table("Static deflection under weight, loads and heat", found.sag)
     if found.moved is not None:
-        yield matrix_table("From there it is brought by", found.moved)
+        yield matrix_table("Displacement from static equilibrium", found.moved)
     if found.held is not None:
         kept = f" ({', '.join(found.locked)} fixed)" if found.locked else ""
-        yield matrix_table(f"Held by, counted from the sagged position{kept}", found.held)
+        yield matrix_table(f"Prescribed coordinates, relative to static equilibrium{kept}", found.held)
 
 
 def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> dict[str, float]:

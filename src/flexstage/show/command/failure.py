@@ -51,7 +51,7 @@ def _exit_code(action: Callable[[], object]) -> int:
     except KeyboardInterrupt:
         return _interrupted()
     except MemoryError as error:
-        return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Ask for less at once, or free memory"))
+        return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Request less at once, or free memory"))
     except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
         return _fault(error)
     return DONE
@@ -93,9 +93,9 @@ def _bad_input(error: DesignError) -> int:
 
 def _fault(error: Exception) -> int:
     if isinstance(error, OSError) and error.filename and error.errno in _DISKS:
-        return _bad_input(refuse(os.fsdecode(error.filename), f"the system refuses it: {error.strerror}", "Name another file or folder"))
+        return _bad_input(refuse(os.fsdecode(error.filename), f"refused by the system: {error.strerror}", "Name another file or folder"))
     if isinstance(error, FileNotFoundError) and _folder_is_gone():
-        what = "it has been removed, so that no file can be named from here"
+        what = "it has been removed"
         return _bad_input(refuse("the folder this runs in", what, "Change to another folder"))
     if os.environ.get(_DEBUG):
         raise error

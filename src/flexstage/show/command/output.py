@@ -127,7 +127,7 @@ def _file_problem(path: Path) -> str | None:
         return None
     folder = _real_path(path).parent
     if not folder.is_dir():
-        return f"there is no folder {path.parent}"
+        return f"folder {path.parent} not found"
     with tempfile.TemporaryFile(dir=folder):
         return None
 

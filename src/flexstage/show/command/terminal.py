@@ -106,7 +106,7 @@ class _Raw(io.FileIO):
             if self._told and isinstance(error, BrokenPipeError):
                 raise
             if self._told:
-                raise refuse("stdout", f"it cannot be written to: {error.strerror}", "Free space, or send it elsewhere") from None
+                raise refuse("stdout", f"it cannot be written to: {error.strerror}", "Free space, or redirect the output") from None
         return memoryview(data).nbytes
 
 

@@ -76,7 +76,7 @@ def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str]
     for text in texts:
         name, _, value = (part.strip() for part in text.partition("="))
         if name in found:
-            values.findings.append(Finding(f"{option} {name}", "it is given twice", "Say one value"))
+            values.findings.append(Finding(f"{option} {name}", "given twice", "Give one value"))
         elif (one := values.attempt(partial(read, name, value, f"{option} {text}"))) is not None:
             found[name] = one
     require(values.findings)
@@ -89,7 +89,7 @@ def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
             advice = f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
-            raise refuse(where, "this names no motion and value", advice)
+            raise refuse(where, "must be a motion and a value", advice)
         return abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=where))
 
     return read_pairs(texts, option, read)

@@ -30,7 +30,7 @@ def directional_figure(statics: Statics) -> Any:
     with style_context():
         figure = canvas(HALF, 1.12 * HALF)
         axes = figure.add_axes((0.13, 0.2, 0.74, 0.74 / 1.12), projection="polar")
-        both = (("others held", statics.held, SERIES[0]), ("others free", statics.free, SERIES[1]))
+        both = (("others fixed", statics.held, SERIES[0]), ("others free", statics.free, SERIES[1]))
         curves = [curve for curve in both if not np.isnan(curve[1].principal).any()]  # no curve if the model locks the plane
         for name, stiffness, colour in curves:
             radius = 1e-6 * _along(stiffness)

@@ -22,7 +22,7 @@ def format_of(name: str) -> str:
     """
     ending = PurePath(name).suffix.lower()
     if ending not in FORMATS:
-        raise refuse(name, f'the ending "{ending}" is no format a drawing can have', f"End the name in {', '.join(FORMATS)}")
+        raise refuse(name, f'unknown format "{ending}"', f"End the name in {', '.join(FORMATS)}")
     return ending
 
 

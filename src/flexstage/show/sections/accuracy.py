@@ -21,11 +21,11 @@ def drift_section(analysis: Analysis) -> Section | None:
     if drift is None:
         return None
     text = (
-        "Free growth of all bodies and parts, redistributed by the elasticity of the links, per kelvin of uniform change and per gradient "
-        "of 1 K/m."
+        "Free expansion of all bodies and parts, redistributed by the elasticity of the links, per kelvin of uniform change and "
+        "per gradient of 1 K/m."
     )
     gauges = gauge_drift_table(drift)
-    return section("Thermal drift", [Prose(text), drift_table(drift), fold("What the gauges read", gauges)])
+    return section("Thermal drift", [Prose(text), drift_table(drift), fold("Gauge readings", gauges)])
 
 
 def error_section(analysis: Analysis) -> Section | None:

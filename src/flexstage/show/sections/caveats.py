@@ -17,5 +17,5 @@ def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Sect
     """
     found = caveats(mechanism)
     warnings = (*found.warnings, *more)
-    taken = "Taken by default"
+    taken = "Default values"
     return section("Warnings" if warnings else taken, [warning_table(warnings), warning_table(found.defaults, taken)])

@@ -24,8 +24,8 @@ from flexstage.show.viewer.motions import Group
 _SHAPES = 6
 _LEAST, _NAMED = 0.01, 4
 SHAPES = (
-    "The amplitude is arbitrary. Dashed: the platform at rest. Arrows: how it moves, blue along and red about. Seen from above where it "
-    "stays in its plane."
+    "The amplitude is arbitrary. Dashed: the undeformed platform. Arrows: its motion, blue translation, red rotation. Seen from above if "
+    "it stays in its plane."
 )
 
 
@@ -42,8 +42,8 @@ def mode_section(analysis: Analysis, data: StageData) -> Section | None:
     if modes is None or not modes.names:
         return None
     text = (
-        "Undamped modes, strokes held. A mode is the platform's if the platform has a large share of the kinetic energy; modes of single "
-        "units that lie near the platform's are listed as local neighbours."
+        "Undamped modes, actuators fixed. In platform modes the platform has a large kinetic-energy fraction. Local modes of single units "
+        "near the platform modes are listed too."
     )
     shapes = tuple(_shapes(modes, data))
     gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []

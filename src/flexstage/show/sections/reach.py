@@ -59,7 +59,7 @@ def strength_section(analysis: Analysis) -> Section | None:
 
 def _strength(reach: Workspace) -> list[Block | None]:
     stressed = reach.stress is not None and bool(reach.stress.links)
-    text = "Stress, buckling and loads count from the stage relaxed without voltage, over all corners of the strokes, dead load included."
+    text = "Stress, buckling and loads are relative to the stage without voltage, over all corners of the strokes, with permanent load."
     return [
         Prose(text) if stressed else None,
         weakest_first(reach.stress),

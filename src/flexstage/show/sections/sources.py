@@ -17,7 +17,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 _LIMITS = {
     Model.IDEAL: (
-        "Ideal model: rigid bodies and perfect hinges, small motions about the drawn position. It knows no stiffness, load or mode."
+        "Ideal model: rigid bodies and perfect hinges, small motions about the undeformed configuration. No stiffness, loads or modes."
     ),
     Model.MAPPED: (
         "Mapped model, as in the paper: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
@@ -25,7 +25,7 @@ _LIMITS = {
     ),
     Model.LUMPED: (
         "Lumped model: rigid bodies joined by 6x6 beam-theory hinges, small displacements, frequencies below the first resonance of the "
-        "parts themselves. The bodies' own elasticity is left out: a real plate or lever makes the stage softer."
+        "parts themselves. Bodies are rigid: a real plate or lever makes the stage softer."
     ),
 }
 _PAPER = "Shin & Moon, Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism: mappings, unit stiffness, Eq. 28."
@@ -69,7 +69,7 @@ def limit_section(analysis: Analysis) -> Section | None:
     """
     blocks: list[Block | None] = [Prose(_LIMITS[analysis.model])]
     if not part_warnings(analysis.mechanism):
-        blocks.append(Prose("No part lies outside the range that beam theory was compared with."))
+        blocks.append(Prose("All parts are inside the range compared with beam theory."))
     blocks.append(_missing_table(analysis))
     accuracy = error_of_theory_table(analysis.mechanism) if analysis.model is not Model.IDEAL else None
     return section("Limits", [*blocks, accuracy])

@@ -32,7 +32,7 @@ def stage_section(data: StageData, *, motion: str | None = None, ghost: str = ""
     >>> stage_section(still_data(double_triangle())).title
     'The stage'
     """
-    caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
+    caption = "Rigid bodies as described, the platform translucent. A thin line connects a hinge off the outline of its body."
     picture = Picture(to_svg(stage_picture(data), "corner", "The stage from above its front corner"), caption)
     viewer = Viewer("stage", (picture,), first_motion(data) if motion is None else motion, ghost)
     return section("The stage", [viewer, Legend(legend(data)), Prose(said) if said else None])

@@ -32,7 +32,7 @@ TITLES = {
     "forces": "Forces",
     "stops": "Stops",
     "temperatures": "Temperatures",
-    "overrides": "Overrides of single copies",
+    "overrides": "Overrides of single instances",
     "": "Stage",
 }
 _TAGS = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
@@ -132,7 +132,7 @@ def provenance_table(mechanism: Mechanism) -> Table:
     counts = Counter(tag.split()[0] if tag.split() else "assumed" for tag in provenance(mechanism).values())
     order = [*_TAGS, *sorted(set(counts) - set(_TAGS))]
     rows = [(Cell(tag, _TAGS.get(tag, Mark.PLAIN)), str(counts[tag])) for tag in order if counts[tag]]
-    return make_table("Where the numbers come from", ["tag", Column("numbers")], rows)
+    return make_table("Provenance of the numbers", ["tag", Column("numbers")], rows)
 
 
 def source_table(mechanism: Mechanism) -> Table | None:

@@ -29,7 +29,7 @@ def drift_table(drift: Drift) -> Table:
     'uniform [K]'
     """
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
-    notes = [f"Strokes held. {ground_text(drift.ground)}; its point ({at}) mm stays."]
+    notes = [f"Actuators fixed. {ground_text(drift.ground)}; its point ({at}) mm is fixed."]
     return matrix_table("Thermal drift", drift.motion, units=_NANO, notes=notes, provenance=drift.provenance)
 
 
@@ -40,7 +40,7 @@ def ground_text(ground: Ground) -> str:
     ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
     """
     if ground.material is None:
-        return "Ground does not grow"
+        return "Ground without expansion"
     return f"Ground made of {ground.material}" if ground.stated else f"Ground taken as {ground.material}: {ground.source}"
 
 

@@ -13,5 +13,5 @@ def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
     yield result_table(found)
     if found.current.columns:
         yield column_table(
-            "Holding the reach", found.holding, head="along, coil", notes=["At the travel held without time limit, dead load not counted."]
+            "Coil inputs at the travel", found.holding, head="along, coil", notes=["At the continuous travel, without permanent load."]
         )

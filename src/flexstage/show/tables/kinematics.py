@@ -26,7 +26,7 @@ def mobility_table(kinematics: Kinematics) -> Table | None:
     }
     rows = {name: (str(len(each)), ", ".join(each)) for name, each in named.items() if each or name != "force actuators"}
     rows["free internal modes"] = str(len(kinematics.idle)), "move neither platform nor stroke"
-    rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"
+    rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage if parts do not fit exactly"
     notes = [actuation_text(kinematics)]
     return text_table("Mobility", ["", Column("number"), "which"], rows, notes=notes, provenance=kinematics.provenance)
 
@@ -46,7 +46,7 @@ def actuation_text(kinematics: Kinematics) -> str:
     if kinematics.thrusts and not kinematics.actuated:
         return f"{counted}: the strokes do not determine the platform, and the mapping R_a is refused. {_command_text(kinematics)}"
     if not kinematics.actuated:
-        held = f", but the links hold {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
+        held = f", but the links lock {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
         return f"{counted}{held}: the strokes do not determine the platform, and the mapping R_a is refused."
     if strokes > mobility:
         return f"{counted}: redundant actuation, commands outside the range of R_a only stress the stage."
@@ -60,7 +60,7 @@ def _command_text(kinematics: Kinematics) -> str:
     reach = f"with any strokes they push along {', '.join(known)}" if known else "they push along no coordinate alone"
     rest = f", not along {', '.join(left)} alone" if known and left else ""
     forces = count_text(len(kinematics.thrusts), "force actuator")
-    return f"{forces}: forces determine no motion; {reach}{rest}. The elastic model gives how far."
+    return f"{forces}: forces determine no motion; {reach}{rest}. The elastic model computes the travel."
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
@@ -74,7 +74,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
     if not kinematics.thrusts or not kinematics.mobility:
         return None
     whole = kinematics.mobility == len(COMPONENTS)
-    note = "The platform's wrench at its reference point." if whole else "The work in each ideal motion: of the wrench no more is known."
+    note = "The platform's wrench at its reference point." if whole else "Generalised forces of the ideal motions only."
     found = kinematics.force_map
     rows = tuple(f"{name} [{WRENCH_UNITS[FORCES.index(name)]}]" for name in found.rows)
     columns = tuple(f"{name} [{unit}]" for name, unit in zip(found.columns, kinematics.thrust_inputs, strict=True))
@@ -140,6 +140,4 @@ def freedom_table(kinematics: Kinematics) -> Table:
     ['back (B1, B2, B3)', 'rx, ry, rz']
     """
     free = {link: ", ".join(freedom.value for freedom in freedoms) or "none" for link, freedoms in kinematics.free.items()}
-    return merge_rows(
-        make_table("DOFs taken as free", ["link", "free"], free.items(), notes=["In each link's own frame, x along the part."])
-    )
+    return merge_rows(make_table("DOFs taken as free", ["link", "free"], free.items(), notes=["In each link's frame, x along the part."]))

@@ -28,8 +28,8 @@ def loss_table(lost: LostMotion) -> Table:
     ['B4', '0.96632', '3.368 %']
     """
     rows = [_loss_row(lost, name) for name in lost.loss.rows]
-    heads = ["actuator", Column("gain"), Column("loss"), Column("crosstalk received"), "largest contributions"]
-    note = "Gain: ideal motion reached per commanded one. Crosstalk received: the largest response to another actuator's command."
+    heads = ["actuator", Column("gain"), Column("loss"), Column("coupling from others"), "largest contributions"]
+    note = "Gain: transmission ratio, actual over ideal motion. Coupling: the largest response to another actuator's command."
     return make_table("Lost motion", heads, rows, notes=[note], provenance=lost.provenance)
 
 
@@ -70,7 +70,7 @@ def budget_table(lost: LostMotion) -> Table | None:
     if not lost.budget:
         return None
     budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
-    notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones give back what others take."]
+    notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones increase the gain."]
     return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], _share_rows(budgets, "loss"), notes=notes)
 
 
@@ -168,7 +168,7 @@ def crosstalk_table(lost: LostMotion) -> Table:
     >>> crosstalk_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][4]
     '0.96632'
     """
-    note = "Row: what an actuator's motion is reached as. Column: the actuator that is commanded. Ideal: the unit matrix."
+    note = "Row: motion in actuator strokes. Column: commanded actuator. Ideal: the identity matrix."
     return matrix_table("Gain and crosstalk, R_a V+ T", lost.transfer, notes=[note])
 
 
@@ -199,7 +199,7 @@ def correction_table(lost: LostMotion) -> Table:
     >>> correction_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][3]
     '0.34422'
     """
-    return matrix_table("Corrected mapping: strokes that reach the wanted motion", lost.correction, units=("mrad",))
+    return matrix_table("Corrected mapping: strokes per required motion", lost.correction, units=("mrad",))
 
 
 def energy_table(lost: LostMotion) -> Table:
@@ -216,7 +216,7 @@ def energy_table(lost: LostMotion) -> Table:
     rows = _share_rows(energies, "all")
     whole = [Cell("energy [uJ/um^2]", Mark.STRONG), *(Cell(number(1e-6 * float(total), 4)) for total in totals)]
     heads = ["part", *(Column(name) for name in lost.energy.columns)]
-    return make_table("Where the stroke goes: strain energy", heads, [*rows, tuple(whole)], notes=[f"{_OWN_AND_OTHERS}."])
+    return make_table("Strain energy by part", heads, [*rows, tuple(whole)], notes=[f"{_OWN_AND_OTHERS}."])
 
 
 def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:

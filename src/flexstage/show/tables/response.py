@@ -72,6 +72,6 @@ def response_table(response: Response) -> Table:
         tuple((curve.unit, curve.unit, "Hz", "1") for curve in curves),
     )
     band = f"From {number(float(response.frequencies[0]), 4)} to {number(float(response.frequencies[-1]), 4)} Hz."
-    noise = ["0 stands for rounding noise: below 1e-9 of the largest magnitude in its unit."] if not np.all(low) else []
+    noise = ["0: rounding noise, below 1e-9 of the largest magnitude in its unit."] if not np.all(low) else []
     notes, provenance = [band, *noise], response.provenance
     return column_table("Frequency responses", found, head="output, leading input", notes=notes, provenance=provenance)

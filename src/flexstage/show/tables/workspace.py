@@ -44,7 +44,7 @@ def corner_table(corner: Utilisation) -> Table | None:
     scale = single(corner.scale)
     verdict = "within reach" if scale >= 1.0 else "out of reach"
     return result_table(
-        corner, notes=[f"{command_text(corner.command)}, all at once: {verdict}; the whole box may be scaled by {number(scale, 4)}."]
+        corner, notes=[f"{command_text(corner.command)}, all at once: {verdict}; the box can be scaled by {number(scale, 4)}."]
     )
 
 

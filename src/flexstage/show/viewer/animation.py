@@ -126,7 +126,7 @@ def _words(found: Stroke | Misaligned, point: int) -> Iterator[str]:
         yield f"{strained.names[place]}: {stress} of {limit}"
     loose = found.along.values[point, found.along.columns.index("unstable")]
     if np.isnan(loose):
-        yield "no equilibrium was found"
+        yield "no equilibrium found"
     elif loose > 0:
         yield "the free stage is not stable here"
 

@@ -175,7 +175,7 @@ def mode_motions(
         twists = body_twists(model, kinematics, shapes[:, index], tuple(bones.references))
         frequency = float(frequencies[index])
         label = f"{index + 1}  {number(frequency)} Hz  {found.names[index]}"
-        remark = (PLATFORM_MODE if index in found.platform else "a mode beside those of the platform") + about
+        remark = (PLATFORM_MODE if index in found.platform else "a mode of other bodies") + about
         energy = _energy(model, shapes[:, index])
         yield Motion(Group.MODE, str(index + 1), to_typography(label), bones.at_origin(twists), remark, frequency, energy)
 
@@ -275,7 +275,7 @@ def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics
         if np.any(shape):
             twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references)))
             energy, stress = _energy(model, shape), bearing.at(shape)
-            yield Motion(Group.DEFLECTION, name, name, twists, "strokes held", None, energy, stress, f"under {name} alone")
+            yield Motion(Group.DEFLECTION, name, name, twists, "actuators fixed", None, energy, stress, f"under {name} alone")
 
 
 def drift_motions(mechanism: Mechanism, model: LinearModel, bones: Skeleton) -> Iterator[Motion]:
@@ -287,4 +287,4 @@ def drift_motions(mechanism: Mechanism, model: LinearModel, bones: Skeleton) -> 
     for place, (name, label) in enumerate(zip(FIELDS, _WARMER, strict=True)):
         twists = bones.at_origin({body: first_design(each, 2)[:, place] for body, each in found.bodies.items()})
         if np.any(twists):
-            yield Motion(Group.DRIFT, name, label, twists, f"strokes held, ground of {found.taken[GROUND]}")
+            yield Motion(Group.DRIFT, name, label, twists, f"actuators fixed, ground of {found.taken[GROUND]}")

@@ -99,8 +99,8 @@ class SolidOptions:
         """The accuracy and the order. Raises `DesignError` for values out of range."""
         share = parse(self.accuracy, RATIO, where="--accuracy")
         if not 1e-6 <= share < 1.0:
-            what = f"{self.accuracy} is no relative error to ask for"
-            raise refuse("--accuracy", what, 'Give one between 0.0001 % and 100 %, e.g. "1 %"')
+            what = f"must be between 1e-6 and 1 (got {self.accuracy})"
+            raise refuse("--accuracy", what, 'Use e.g. "1 %"')
         return Resolution(share, self.order)
 
     def ways(self, shown: ProgressBar, pool: Pool | None = None) -> Ways:
@@ -227,7 +227,7 @@ def _size(memory: str | None) -> float | None:
         return None
     size = parse(memory, Quantity("size of memory", "B", "GB", "8 GB"), where="--memory")
     if size <= 0.0:
-        raise refuse("--memory", f"{memory} is no memory to plan with", 'Give what may be used, e.g. "8 GB"')
+        raise refuse("--memory", f"must be a size of memory (got {memory})", 'Use e.g. "8 GB"')
     return size
 
 
@@ -235,7 +235,7 @@ def _hinge_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result
     found = solid_hinges(mechanism, hinges(asked.accuracy, asked.order, ways))
     warnings = _inexact_hinges(found)
     return _Result(
-        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them less exact than was asked.", not warnings),
+        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them below the required accuracy.", not warnings),
         results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([pages.hinge_section(found)]),
@@ -307,7 +307,7 @@ def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         if isinstance(part, Leaf) and part.ends is LeafEnds.FREE and link.material is not None:
             clamped = leaf_diagonal(replace(part, ends=LeafEnds.CLAMPED), link.material)[3]
             stiffer = float(np.max(np.real(leaf_diagonal(part, link.material)[3] / clamped))) - 1.0
-            what = f"theory lets its ends warp, finite elements clamp them: in twist they are {100.0 * stiffer:.3g} % stiffer"
+            what = f"its ends warp in theory, but are clamped in finite elements: {100.0 * stiffer:.3g} % stiffer in twist"
             found[link.link.part] = Finding(f"parts.{link.link.part}", what, 'Compare with ends = "clamped"')
     return tuple(found.values())
 
@@ -324,8 +324,8 @@ def _accuracy_warnings(what: str, found: Converged[Any], asked: Resolution) -> t
     if found.error <= asked.accuracy:
         print_note(f"{what}: {text}")
         return ()
-    more = found.stopped or (f"Ask for --order {found.order + 1}" if asked.order is not None else "This is the highest order")
-    return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % was asked", more.rstrip(".")),)
+    more = found.stopped or (f"Use --order {found.order + 1}" if asked.order is not None else "This is the highest order")
+    return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % required", more.rstrip(".")),)
 
 
 def _accuracy_text(found: Converged[Any]) -> str:
@@ -334,13 +334,13 @@ def _accuracy_text(found: Converged[Any]) -> str:
         locked, number = ", ".join(found.unestimated[:3]), len(found.unestimated)
         return f"of {number} figures ({locked}{', ...' if number > 3 else ''}) {NOT_ESTIMATED}; of the others it is {size}"
     more = f", {found.order + 1} in {found.raised} of the components" if found.raised else ""
-    return f"the error estimated of finite elements is {size} at order {found.order}{more}"
+    return f"the estimated error of finite elements is {size} at order {found.order}{more}"
 
 
 def _accuracy_headline(found: Converged[Any], asked: Resolution) -> Headline:
     """Accuracy of a result, compared with the required accuracy."""
     said = _accuracy_text(found)
-    return page.Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % was asked.", found.error <= asked.accuracy)
+    return page.Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % required.", found.error <= asked.accuracy)
 
 
 def _verification_tables(found: verification.Verification) -> Iterator[Table | str | None]:

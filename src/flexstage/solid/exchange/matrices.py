@@ -56,7 +56,7 @@ def export_superelement(
     sound_components(shape, cache)
     ((_, element),) = reduce_parts((whole,), replace(reduction, residual=True), Ways(cache, progress, Limits(memory=memory)))
     if element.strokes:
-        raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on its both sides")
+        raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on both of its sides")
     with atomic_write(target) as place, place.open("wb") as stream:
         np.savez(stream, K=sum(element.stiffness.values()), M=sum(element.inertia.values()))
     return superelement(Superelement(FileUnits.SI, _ports(whole), file=str(target), source=f"flexstage, {reduction.modes} modes"))
@@ -74,9 +74,7 @@ def _free(part: Component) -> Component:
     """The component without neighbours, all its joints ports that remain plane."""
     joints = [item.joint for item in part.interfaces]
     if len(joints) + len(part.fixed) < 2:
-        raise refuse(
-            part.name, f"it meets what is not of it at {len(joints) + len(part.fixed)} place", "A superelement has two or more ports"
-        )
+        raise refuse(part.name, f"it has only {len(joints) + len(part.fixed)} interface", "A superelement has two or more ports")
     interfaces = (*(replace(item, yields=False) for item in part.interfaces), *(Interface(joint) for joint in part.fixed))
     return replace(part, interfaces=interfaces, fixed=())
 

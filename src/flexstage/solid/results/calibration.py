@@ -98,8 +98,8 @@ def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
 def _doubt(name: str, error: float | None) -> Finding:
     if error is None:
         return Finding(f"parts.{name}", f"the error of its 6x6 by FEA is not known: {NO_ESTIMATE}", LEAVE)
-    what = f"its 6x6 by FEA is known to {100.0 * error:.2g} % only, no better than beam theory's"
-    return Finding(f"parts.{name}", what, "Ask for more accuracy")
+    what = f"the error of its 6x6 by FEA is {100.0 * error:.2g} %, no better than beam theory's"
+    return Finding(f"parts.{name}", what, "Increase the accuracy")
 
 
 def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
@@ -128,19 +128,19 @@ def _rename_parts(links: Mapping[str, Link], names: Mapping[str, str], owner: st
 
 def _refuse_calibrated(mechanism: Mechanism) -> Iterator[Finding]:
     for name in calibrated_parts(mechanism):
-        yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
+        yield Finding(f"parts.{name}", "its 6x6 is from FEA already", "Calibrate the original file")
 
 
 def _refuse_members(mechanism: Mechanism) -> Iterator[Finding]:
     for name in {link.link.part: link for link in expand(mechanism).links.values() if link.of is not None}:
-        what = "it consists of several hinges: no 6x6 can stand for one of them"
-        yield Finding(f"parts.{name}", what, "Draw them as links of their own to calibrate them")
+        what = "it consists of several hinges, which cannot be calibrated separately"
+        yield Finding(f"parts.{name}", what, "Define them as separate links")
 
 
 def _refuse_overrides(mechanism: Mechanism) -> Iterator[Finding]:
     for link in expand(mechanism).links.values():
         if link.described.part != mechanism.parts[link.link.part]:
-            yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
+            yield Finding(link.name, f"overrides its part {link.link.part}, whose 6x6 is shared", "Define a separate part for that link")
 
 
 _TURN = spatial_rotation(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))

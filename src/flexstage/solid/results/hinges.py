@@ -182,7 +182,7 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     >>> solid_hinges(Mechanism("bare"))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
+    flexstage.base.finding.DesignError: links: no hinge has a shape. Use notches, necks, leaves or rods.
     """
     found = distinct_hinges(mechanism)
     require_hinges(found)
@@ -196,10 +196,10 @@ def require_hinges(found: Mapping[str, DistinctHinge]) -> None:
     >>> require_hinges({})
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
+    flexstage.base.finding.DesignError: links: no hinge has a shape. Use notches, necks, leaves or rods.
     """
     if not found:
-        raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
+        raise refuse("links", "no hinge has a shape", "Use notches, necks, leaves or rods")
 
 
 def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:

@@ -92,7 +92,7 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
     each = [jobs(stage, components) for stage, components in zip((shape, *alone), parts, strict=True)]
     names = "hinges", f"order {lower.fineness.order}", f"order {upper.fineness.order}"
-    more = f" Order {rest[0]} follows where that is not exact enough." if rest else ""
+    more = f" Order {rest[0]} follows if the accuracy is insufficient." if rest else ""
     phases = {name: chain.from_iterable(same) for name, same in zip(names, zip(*each, strict=True), strict=True)}
     return _plan(phases, ways, more, frozenset(job.key for job in chain.from_iterable(each[0])))
 

@@ -24,7 +24,7 @@ _AT_ORDER_TWO = 0.25
 """Order one is inaccurate: on hinges and blocks order two had a tenth of its error, never a quarter."""
 _LOCKED = 0.5
 """Change from order one above which it does not estimate order two: elements of order one lock in bending of thin parts."""
-NOT_ESTIMATED = "FEA's error is not estimated: order one, which order two is compared with, locks where thin parts bend. Ask for --order 3"
+NOT_ESTIMATED = "FEA's error is not estimated: order one, the reference of order two, locks in bending of thin parts. Use --order 3"
 
 
 @dataclass(frozen=True)

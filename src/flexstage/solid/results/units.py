@@ -41,11 +41,11 @@ class SolidUnit(UnitOutput, InNotebook):
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Units alone as solids",
+        "Isolated units as solids",
         "copy axial lateral gain ideal_gain loss stress.weakest stress.peak stress.least_safety",
         head="unit",
         notes=(
-            "Each unit alone, output on a rigid face.",
+            "Each unit isolated, output on a rigid face.",
             "Axial (K_a) and lateral (K_l) stiffness: actuators fixed, all other motions of the output prevented.",
             f"Gain and stress: output guided along its direction and not loaded, full stroke. {SHARP_CORNERS}",
         ),
@@ -111,7 +111,7 @@ def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
         raise refuse(
             "units",
             "none of the stage's units drives an output of its own by one actuator",
-            "Ask for the whole stage instead: --scope stage",
+            "Use --scope stage",
         )
     return {unit: _unit(mechanism, unit, copy, direction, reduction=reduction, reduce=reduce) for unit, (copy, direction) in found.items()}
 

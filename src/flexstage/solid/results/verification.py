@@ -383,7 +383,7 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidS
 def _why_unpaired(best: Pair | None) -> str:
     if best is None:
         return "theory has fewer modes"
-    return f"theory has no mode like it: that at {best.frequency:.4g} Hz shares {best.assurance:.2f} of its motion, {RELIABLE} is needed"
+    return f"no paired mode of theory: best assurance {best.assurance:.2f}, at {best.frequency:.4g} Hz (required {RELIABLE})"
 
 
 def _finite(error: float | None) -> float | None:
@@ -395,7 +395,7 @@ def _why_unestimated(error: float | None, figure: str = "", found: Converged[Any
     if error is not None:
         return None
     is_locked = found is not None and figure in found.unestimated
-    return NOT_ESTIMATED if is_locked else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
+    return NOT_ESTIMATED if is_locked else "FEA's error is not estimated: no coarser result has this figure"
 
 
 def _mapped_model(mechanism: Mechanism) -> LinearModel | None:
@@ -461,13 +461,13 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     off = f"up to {_percent(_size_of_difference(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
-        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: what is left is not the hinges'."
+        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: the residual is not from the hinges."
     name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
     if all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows):
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
     known = departures(rows)
     if any(row.trust is Trust.UNCLEAR for row in rows):
-        said = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: ask for more accuracy before deciding."
+        said = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: increase the accuracy."
         return f"{known[:1].upper()}{known[1:]}. {said}" if known else said
     better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
     if not better:
@@ -475,7 +475,7 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     after = f"with calibrated hinges {_percent(max(better))}"
     if all(row.trust is not Trust.FEA for row in rows):
         return f"{name} is {off}; {after}: calibrate, then trust the lumped model."
-    rest = "the rest is the elasticity of bodies and joints, which only the solid model knows. Trust FEA."
+    rest = "the residual is the elasticity of bodies and joints, only in the solid model. Trust FEA."
     return f"{known[:1].upper()}{known[1:]}; {after}: {rest}"
 
 

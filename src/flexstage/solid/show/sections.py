@@ -68,7 +68,7 @@ def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
         stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
         tables = (command_table(name, unit), *(() if stress is None else (stress,)))
         blocks += [Abreast((picture, *tables))] if stress is not None else list(tables)
-    return section("Units alone", blocks)
+    return section("Isolated units", blocks)
 
 
 def _in_megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
@@ -81,12 +81,12 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
 
     stage = found.result
     worst = max(found.errors, key=lambda name: found.errors[name], default=None)
-    error = "not known, nothing coarser was at hand" if worst is None else f"{100.0 * found.errors[worst]:.2g} % ({worst})"
+    error = "unknown without a coarser result" if worst is None else f"{100.0 * found.errors[worst]:.2g} % ({worst})"
     if found.unestimated:
         error += f"; of {', '.join(found.unestimated)} {NOT_ESTIMATED}"
     text = (
         f"Finite elements of order {found.order}: {stage.read.elements} elements and {stage.read.freedoms} unknowns in the distinct "
-        f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest error estimated, from a coarser "
+        f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest estimated error, from a coarser "
         f"resolution: {error}."
     )
     polar = to_svg(directional_figure(stage.statics), "solid-polar", "Stiffness by direction in the plane")
@@ -118,7 +118,7 @@ def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
 def _stress_picture(stage: SolidStage) -> Picture:
     assert stage.worst is not None  # noqa: S101  every stress has a worst corner
     surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
-    caption = "Von Mises stress at the corner of the strokes that is worst for the weakest link, dead load included; motion magnified."
+    caption = "Von Mises stress at the worst corner of the strokes for the weakest link, with permanent load; motion magnified."
     return Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), "stress", caption), caption)
 
 
@@ -152,7 +152,7 @@ def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping
     pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
     alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
     partners = [(f"mode {pair.index + 1}", f"mode fea {index + 1}") for index, pair in alike.items()]
-    text = "Left theory, right finite elements: a chosen mode plays beside its partner. Bodies move as rigid ones; signs are arbitrary."
+    text = "Left theory, right finite elements: a chosen mode plays next to its counterpart. Bodies move rigidly; signs are arbitrary."
     joined = joined_viewers(partners)
     return pairs, None if joined is None else section("Modes side by side", [joined, Prose(text)])
 

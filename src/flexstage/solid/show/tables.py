@@ -51,8 +51,8 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
     heads = [*(Column(axis, form.unit) for axis, form in zip(_AXES, forms, strict=True)), Column("error")]
     note = (
         "Compliance about the centre of the hinge between the ends of its arcs, in its link frame. Error: of any entry, estimated. "
-        "Where a hinge ends on a block, it includes what the block yields at its root; the ground and bodies without outlines are rigid. "
-        f"{NO_VALUE}: it cannot be told from that of the blocks beside the hinge."
+        "The root at a block is included; the ground and bodies without outlines are rigid. "
+        f"{NO_VALUE}: not separable from the adjacent blocks."
     )
     notes = [note, *([f"Error {NO_VALUE}: {NO_ESTIMATE}."] if any(hinge.error is None for hinge in found.values()) else [])]
     return make_table("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
@@ -136,11 +136,11 @@ def verdict_table_of(found: Verification) -> Table:
     notes = [
         "Theory: beam theory for hinges, the lumped model for units and stage.",
         "Calibrated: the same with the 6x6 of its hinges from FEA, and so not independent of it.",
-        "FEA's error is estimated from two resolutions: it is no bound.",
+        "FEA's error is estimated from two resolutions, and is not a bound.",
         *_stated_note(found.as_stated),
         *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),
     ]
-    return make_table("Which to trust", ["what", "verdict"], rows, notes=notes)
+    return make_table("Verdicts", ["subject", "verdict"], rows, notes=notes)
 
 
 def calibration_table(found: Calibration) -> Table:

@@ -56,4 +56,4 @@ def _resumable(output: Path) -> Generator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        raise refuse(str(output), "interrupted; what was computed is kept", "Go on with --resume") from None
+        raise refuse(str(output), "interrupted; results are kept", "Continue with --resume") from None

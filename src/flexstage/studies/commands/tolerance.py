@@ -41,7 +41,7 @@ def tolerance(
             asked,
             output,
             Run(workers, resume),
-            lambda done, of: shown.share(f"{done} of {of} copies", done / max(of, 1)),
+            lambda done, of: shown.share(f"{done} of {of} samples", done / max(of, 1)),
         )
     page, warnings = partial(tolerance_report, found), loaded_findings(found.study)
     return CommandResult(found.study.design, lambda: found, lambda: tolerance_tables(found), page, Model.LUMPED, warnings)

@@ -30,7 +30,7 @@ class Binding:
         "Binding limits",
         "name limit gain price",
         notes=(
-            "Gain: of the objective, where the limit or end of the range is relaxed by 1 % of its value. Price: its change per unit of it.",
+            "Gain: of the objective, if the limit or range end is relaxed by 1 % of its value. Price: change of the objective per unit.",
         ),
     )
 
@@ -239,7 +239,7 @@ class Optimum(Outcome):
         """Reason why there is no final design; empty otherwise."""
         if self.point is None:
             reasons = [start.reason for start in self.starts if start.reason]
-            return f"no start found a design that keeps all limits{': ' + reasons[0] if reasons else ''}"
+            return f"no start found a feasible design{': ' + reasons[0] if reasons else ''}"
         return ""
 
     @property
@@ -272,7 +272,7 @@ class Front(Outcome):
     @property
     def failure(self) -> str:
         """Reason why there is no front; empty otherwise."""
-        return "" if self.points else "no start found a design that keeps all limits"
+        return "" if self.points else "no start found a feasible design"
 
     @property
     def values(self) -> Array:

@@ -36,7 +36,7 @@ def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded 
         if best is not None:
             break
     if best is None:
-        reason = f"none of the {tried} nearest designs on the steps keeps all limits: make the steps finer, or the limits looser"
+        reason = f"none of the {tried} nearest designs on the steps is feasible: use finer steps, or wider limits"
         return Rounded(None, None, np.nan, tried, reason)
     for _ in range(_ROUNDS):
         around = np.array(list(_single_steps(setting, best, stepped)))

@@ -100,7 +100,7 @@ def _measure_findings(study: Study, objectives: tuple[Objective, ...], kept: tup
     for where, each in asked:
         value = value_or_reason(bench, each)
         if isinstance(value, str):
-            yield Finding(where, value, "Ask for what this stage has")
+            yield Finding(where, value, "Use measures of this stage")
 
 
 def _stated_values(study: Study, variable: Variable) -> list[float]:
@@ -128,10 +128,10 @@ def _range_findings(study: Study) -> Iterator[Finding]:
         unit = "" if each.relative else f" {each.quantity.si}"
         slack = _EDGE * (each.high - each.low)
         if not each.low - slack <= value <= each.high + slack:
-            what = f"the design as it stands has {value:.6g}{unit}, outside {each.low:.6g} to {each.high:.6g}{unit}"
+            what = f"the nominal value is outside the range (got {value:.6g}{unit}, expected {each.low:.6g} to {each.high:.6g}{unit})"
             yield Finding(where, what, "Widen the range, or change the design")
         if not each.relative:
             found = _stated_values(study, each)
             if max(found) - min(found) > _EDGE * max(map(abs, found)):
-                what = f"its addresses state different values, {min(found):.6g} to {max(found):.6g}{unit}"
+                what = f"its addresses have different values, {min(found):.6g} to {max(found):.6g}{unit}"
                 yield Finding(where, what, "Give the range in percent, or use two variables")

@@ -37,10 +37,10 @@ def design_text(study: Study, folder: Path) -> str:
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> design_text(leaf_study()[0], Path()).splitlines()[0]
-    '# The stage that the study "thicker leaves" starts from.'
+    '# The initial stage of the study "thicker leaves".'
     """
     path = design_path(study, folder)
-    return read_text(path) if path is not None else dumps(study.design, {"": f'The stage that the study "{study.name}" starts from.'})
+    return read_text(path) if path is not None else dumps(study.design, {"": f'The initial stage of the study "{study.name}".'})
 
 
 def write_optimum(text: str, study: Study, definition: OptimisationProblem, values: Array | Sequence[float], *, where: str = "text") -> str:

@@ -172,14 +172,14 @@ def name_findings(study: Study) -> Iterator[Finding]:
     >>> from dataclasses import replace
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> print(*name_findings(replace(neck_study(), responses={"neck": neck_study().responses["tilt"]})))
-    responses.neck: the results have a column "neck" already, of variables.neck. Give every column a name of its own.
+    responses.neck: column "neck" exists already, from variables.neck. Use unique names.
     """
     owners = {"design": "the number of a design"}
     for where, name in study.names:
         if not name.strip() or not name.isprintable():
-            yield Finding(where, "its name is empty, or has control characters or formats in it", "Write a name of letters and digits")
+            yield Finding(where, "its name is empty, or contains control characters", "Use letters and digits")
         elif name in owners:
-            yield Finding(where, f'the results have a column "{name}" already, of {owners[name]}', "Give every column a name of its own")
+            yield Finding(where, f'column "{name}" exists already, from {owners[name]}', "Use unique names")
         owners[name] = where
 
 

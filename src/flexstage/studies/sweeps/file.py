@@ -61,7 +61,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     variables = _variables(file.variables, head)
     plan = _plan(file.sweep, variables, findings)
     if not file.responses:
-        findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
+        findings.append(Finding("responses", "no response", 'Name a measure, e.g. f1 = "frequency.platform.1"'))
     study = Study(file.name, design, variables, Table(head.responses), head.limits, plan, text)
     require(with_lines([*findings, *variable_findings(design, variables), *name_findings(study)], text, where))
     return study
@@ -123,7 +123,7 @@ def _variable(table: VariedTable, name: str, head: Opening) -> Variable:
     shares = (is_share(table.low), is_share(table.high))
     findings: list[Finding] = []
     if shares[0] != shares[1]:
-        findings.append(Finding(f"{where}.to", "one end is relative (%), the other not", "Give both alike"))
+        findings.append(Finding(f"{where}.to", "one end is relative (%), the other not", "Use % for both or neither"))
     ends: list[float] = []
     for key, raw, share in zip(("from", "to"), (table.low, table.high), shares, strict=True):
         try:
@@ -146,7 +146,7 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
         findings += error.findings
         return None
     if is_share(table.low):
-        findings.append(Finding(f"{where}.step", "the range is relative (%)", "Give the range with its unit, or leave out the step"))
+        findings.append(Finding(f"{where}.step", "the range is relative (%)", "Give the range with a unit, or leave out the step"))
     elif not step > 0.0:
         findings.append(Finding(f"{where}.step", f"found {step:g}", 'Give a step above 0, for example step = "10 um"'))
     return step
@@ -195,13 +195,13 @@ def _plan(table: SweepTable, variables: tuple[Variable, ...], findings: list[Fin
     levels = _levels(table, variables, findings) if grid else ()
     plan = Plan(table.sampling, len(variables), 0 if grid else table.designs or _DESIGNS, levels, table.seed, table.pairs)
     if plan.designs > _MOST:
-        findings.append(Finding("sweep.designs", f"these are {plan.designs:.3g} designs", f"Ask for at most {_MOST:.0e}"))
+        findings.append(Finding("sweep.designs", f"must be at most {_MOST:.0e} (got {plan.designs:.3g})", "Use fewer designs"))
     return plan
 
 
 def _levels(table: SweepTable, variables: tuple[Variable, ...], findings: list[Finding]) -> tuple[int, ...]:
     without = [each.name for each in variables if each.levels is None]
-    findings += (Finding(f"variables.{name}", "a grid needs its levels", "Add for example levels = 5") for name in without)
+    findings += (Finding(f"variables.{name}", "levels missing for a grid", "Add e.g. levels = 5") for name in without)
     if table.designs is not None:
-        findings.append(Finding("sweep.designs", "a grid has as many designs as its levels make", "Leave it out"))
+        findings.append(Finding("sweep.designs", "a grid gets its number of designs from the levels", "Leave it out"))
     return tuple(each.levels or 2 for each in variables)

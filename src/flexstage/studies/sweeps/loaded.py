@@ -41,7 +41,7 @@ def unstable_designs(study: Study, values: Array) -> dict[int, str]:
     """
     factors = _factors(study, values)
     return {
-        int(row): f"stage: the drawn position does not hold under weight, payloads and forces (load factor {factors[row]:.3g})"
+        int(row): f"stage: unstable under weight, payloads and forces (load factor {factors[row]:.3g})"
         for row in np.flatnonzero(factors < 1.0)
     }
 
@@ -57,9 +57,9 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     if least >= DOUBTFUL:
         return ()
     where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
-    told = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 do not hold: no results"
-    what = f"weight, payloads and forces soften designs: the load factor goes down to {least:.3g} ({where}); {told}"
-    return (Finding("variables", what, 'Add to [limits] for example buckling = "at least 20"'),)
+    told = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable: no results"
+    what = f"weight, payloads and forces reduce stiffness: smallest load factor {least:.3g} ({where}); {told}"
+    return (Finding("variables", what, 'Add to [limits] e.g. buckling = "at least 20"'),)
 
 
 def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
@@ -72,7 +72,7 @@ def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
     factors = load_factors(study.mechanism_for(values))
     if factors is None:
         return ()
-    advice = 'Add to [limits] for example buckling = "at least 2"'
+    advice = 'Add to [limits] e.g. buckling = "at least 2"'
     require(Finding("the best design", each.what, advice) for each in factors.refusals)
     return tuple(Finding("the best design", each.what, each.advice) for each in factors.warnings)
 

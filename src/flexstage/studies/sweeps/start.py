@@ -30,7 +30,7 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
         found = "both a design file and a case are named" if file.design else "no design is named"
         findings.append(Finding("design", found, 'Write design = "stage.toml", or case = "double-triangle"'))
     if file.design and file.parameters:
-        findings.append(Finding("parameters", "a design file has numbers, no parameters", "Leave them out, or start from a case"))
+        findings.append(Finding("parameters", "a design file has no parameters", "Leave them out, or use a case"))
     require(findings)
     return (load(folder / file.design), None) if file.design else _draw(file.case or "", file.parameters)
 
@@ -78,7 +78,7 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
     if table.address is not None:
         raise refuse(f"{where}.address", "both an address and a parameter are named", "Name one of them")
     if variant is None:
-        advice = 'Give the address of a number: address = "parts.neck.thickness"'
+        advice = 'Use the address of a number: address = "parts.neck.thickness"'
         raise refuse(f"{where}.parameter", "a design file has no parameters", advice)
     names: list[str] = []
     found: list[Quantity] = []
@@ -103,5 +103,5 @@ def one_quantity(where: str, found: list[Quantity]) -> Quantity:
     'length'
     """
     if len({each.si for each in found}) > 1:
-        raise refuse(where, f"they are of different quantities: {', '.join(each.name for each in found)}", "Use two variables")
+        raise refuse(where, f"different quantities: {', '.join(each.name for each in found)}", "Use two variables")
     return found[0]

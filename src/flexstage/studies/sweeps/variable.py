@@ -152,13 +152,15 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
             what = f"its range is empty: from {variable.text(variable.low)} to {variable.text(variable.high)}"
             yield Finding(where, what, "Give from < to")
         elif variable.logarithmic and variable.low <= 0.0:
-            yield Finding(where, f"a logarithmic range cannot begin at {variable.low:g}", "Begin above 0, or leave out the logarithm")
+            yield Finding(
+                where, f"a logarithmic range must start above 0 (got {variable.low:g})", "Use a positive start, or a linear range"
+            )
         if variable.levels is not None and variable.levels < 2:
-            yield Finding(where, f"it has {variable.levels} level", "Give 2 levels or more")
+            yield Finding(where, f"must be at least 2 levels (got {variable.levels})", "Use 2 levels or more")
         for address in variable.addresses:
             full = canonical(mechanism, address) if variable.variant is None else f"parameter {address}"
             if full in owners:
-                yield Finding(where, f"'{address}' is already moved by {owners[full]}", "Let one variable move it")
+                yield Finding(where, f"'{address}' is already set by {owners[full]}", "Use one variable")
             owners[full] = variable.name
     yield from _parameter_findings(mechanism, tuple(variables))
 
@@ -178,11 +180,11 @@ def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -
         for name in variable.addresses:
             moved = _numbers_moved_by(variable.variant, name)
             if not moved:
-                yield Finding(where, f"parameter {name} changes nothing of this design", "Vary another")
+                yield Finding(where, f"parameter {name} has no effect on this design", "Use another one")
             for address in sorted(moved & set(overwritten)):
                 other, text = overwritten[address]
-                what = f"parameter {name} moves {text}, which variable {other} sets too"
-                yield Finding(where, what, "Let one of them move it, or vary the address in percent of what the parameter makes it")
+                what = f"parameter {name} sets {text}, as variable {other} does"
+                yield Finding(where, what, "Remove one of them, or give the range of the address in percent")
 
 
 def _numbers_moved_by(variant: Variant, name: str) -> frozenset[str]:

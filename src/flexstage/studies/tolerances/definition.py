@@ -138,7 +138,7 @@ class Tolerance(Study):
         """Measures of a sample or a batch, column by column or those of `names`."""
         columns = self.columns
         found = self.measure_on(bench_of(mechanism), tuple(columns[name] for name in (columns if names is None else names)))
-        return tuple("nothing is asked" if each is None else each for each in found)
+        return tuple("no measure" if each is None else each for each in found)
 
     def measure_on(self, bench: Bench, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
         """The requested columns of the study, from a bench; the others are left out."""

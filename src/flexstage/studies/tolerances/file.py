@@ -70,11 +70,11 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
             Finding("scatter", "nothing scatters", 'Write for example wire = { address = "hinges.thickness", normal = "5 um" }')
         )
     if file.tolerance.copies > _MOST:
-        findings.append(Finding("tolerance.copies", f"these are {file.tolerance.copies:.3g} copies", f"Ask for at most {_MOST:.0e}"))
+        findings.append(Finding("tolerance.copies", f"must be at most {_MOST:.0e} (got {file.tolerance.copies:.3g})", "Use fewer samples"))
     asked = _command(file.tolerance, design, findings)
     limits = (*(_lines(design, findings) if file.tolerance.requirements else ()), *head.limits)
     if not head.responses and not limits and asked is None:
-        findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
+        findings.append(Finding("responses", "no response", 'Name a measure, e.g. f1 = "frequency.platform.1"'))
     require(with_lines(findings, text, where))
     study = _study(head, scatters, limits, bench.shared, text=text, command=asked)
     named = (replace(each, where=each.where.replace("variables.", "scatter.", 1)) for each in name_findings(study))
@@ -148,7 +148,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
     quantity = one_quantity(f"{where}.address", [quantity_of(bench.design, address) for address in addresses])
     distribution, relative = _distribution(table, where, shape, quantity)
     if table.independent and len(addresses) < 2:
-        findings.append(Finding(f"{where}.independent", f"{addresses[0]} is one number, and has no copies", "Leave it out"))
+        findings.append(Finding(f"{where}.independent", f"{addresses[0]} is a single number", "Leave it out"))
     if relative:
         findings += _no_share(where, addresses, bench.design)
     require(findings)
@@ -158,7 +158,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
 
 def _no_share(where: str, addresses: list[str], design: Mechanism) -> list[Finding]:
     nought = [address for address in addresses if float(get(design, address)) == 0.0]
-    advice = 'Give the deviation with its unit, for example "10 um"'
+    advice = 'Use a deviation with a unit, e.g. "10 um"'
     return [Finding(where, f"{nought[0]} is 0, and a share of it is 0", advice)] if nought else []
 
 
@@ -181,10 +181,10 @@ def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
     """The specified distribution."""
     given = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
     if len(given) != 1:
-        what = "it is both normal and uniform" if given else "it is not said how far it deviates"
-        findings.append(Finding(f"{where}.normal", what, 'Write normal = "2 um", a standard deviation, or uniform = "5 um", a half width'))
+        what = "must be normal or uniform, not both" if given else "deviation missing"
+        findings.append(Finding(f"{where}.normal", what, 'Use normal = "2 um", a standard deviation, or uniform = "5 um", a half width'))
     if table.within is not None and given == [Shape.UNIFORM]:
-        findings.append(Finding(f"{where}.within", "a uniform distribution ends by itself", "Leave it out"))
+        findings.append(Finding(f"{where}.within", "a uniform distribution is bounded", "Leave it out"))
     return given[0] if given else Shape.NORMAL
 
 
@@ -193,7 +193,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
     raw = {shape.value: table.normal if shape is Shape.NORMAL else table.uniform, "within": table.within}
     given = {key: text for key, text in raw.items() if text is not None}
     if len({is_share(text) for text in given.values()}) > 1:
-        raise refuse(f"{where}.within", "one is relative (%), the other not", "Give both alike")
+        raise refuse(f"{where}.within", "one is relative (%), the other not", "Use % for both or neither")
     sizes: dict[str, float] = {}
     findings: list[Finding] = []
     for key, text in given.items():

@@ -73,7 +73,7 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
     if owner == "materials" and stem not in design.materials:
         return _stated_addresses(design, source, (f"materials.{name}.{rest}" for name in design.materials))
     if owner in PLACED and stem not in (*MISALIGNED, *design.units, *design.gauges):
-        raise refuse(source, f'"{stem}" is not where copies stand', suggest_nearest(stem, MISALIGNED))
+        raise refuse(source, f'"{stem}" has no placement', suggest_nearest(stem, MISALIGNED))
     if stem in MISALIGNED and (names := _standing(design, owner)):
         return tuple(f"{name}.{rest}" for name in names)
     try:
@@ -107,7 +107,7 @@ def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
 def _of_links(design: Mechanism, source: str, wanted: Callable[[PlacedLink], bool], rest: str) -> tuple[str, ...]:
     links = [link for link in _described(design) if wanted(link)]
     if not links:
-        raise refuse(source, "the design has none of this kind", f"Name parts that it has: {', '.join(design.parts)}")
+        raise refuse(source, "the design has no such part", f"Use one of its parts: {', '.join(design.parts)}")
     return _stated_addresses(design, source, (f"{_home(link)}.{rest}" for link in links))
 
 
@@ -123,7 +123,7 @@ def _stated_addresses(design: Mechanism, source: str, candidates: Iterator[str])
             complaint = complaint or error
     if not found:
         what = complaint.findings[0] if complaint is not None else None
-        raise refuse(source, what.what if what else "the design does not state it", what.advice if what else "State it")
+        raise refuse(source, what.what if what else "missing in the design", what.advice if what else "Add it")
     return tuple(found)
 
 
@@ -142,10 +142,10 @@ def _numbers(design: Mechanism, address: str) -> Iterator[tuple[str, str]]:
         yield from ((name, f"{address}.{name}") for name in COMPONENTS[: len(node.items)])
     elif isinstance(node, NumberNode):
         if get(design, address) is None:
-            raise refuse(address, "the description does not state it", "State it, or choose another number")
+            raise refuse(address, "missing in the design", "Add it, or choose another number")
         yield "", address
     else:
-        raise refuse(address, "this is not a number", "Address one of its numbers")
+        raise refuse(address, "not a number", "Use the address of one of its numbers")
 
 
 def _copies(design: Mechanism, place: Place, links: tuple[PlacedLink, ...], shared: dict[str, str]) -> Iterator[str]:

@@ -40,8 +40,8 @@ class Stored:
         """The file with that text, written completely or not at all; refused after a change by another program, unless `over`."""
         found = _digest(self.path.read_bytes()) if self.path.exists() else ""
         if found != self.digest and not over:
-            what = "it was changed on disk since it was read here" if found else "it was removed since it was read here"
-            raise refuse(self.path.name, what, "Reload it (your text stays in undo), or save over it")
+            what = "changed on disk by another program" if found else "removed by another program"
+            raise refuse(self.path.name, what, "Reload it (your text remains in undo), or overwrite it")
         raw = self.mark + text.replace("\n", self.ending).encode() if self.ending != "\n" else self.mark + text.encode()
         write(self.path, raw)
         return replace(self, text=text, digest=_digest(raw))

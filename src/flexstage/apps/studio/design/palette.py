@@ -43,7 +43,7 @@ def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
 def _fill(text: str, fields: Mapping[str, str]) -> str:
     for name, value in fields.items():
         if any(not sign.isprintable() or sign in '"\\' for sign in value):
-            raise refuse(name, "it has quotes, backslashes or line ends", "Write a name or a value with its unit, without quotes")
+            raise refuse(name, "it has quotes, backslashes or line ends", "Use a name or a value with its unit, without quotes")
         text = text.replace("{" + name + "}", value)
     return text
 
@@ -55,7 +55,7 @@ def _require_free(text: str, filled: str, snippet: str) -> None:
     heads = [head for head, _ in _tables(filled)]
     entries = [key for key in line_numbers(filled) if key not in heads]
     known = [key for key in (*entries, *(head for head in heads if head.count(".") >= 1)) if key in taken]
-    require(Finding(key, f"it stands in the text already, at line {taken[key]}", f"Give {snippet} another name") for key in known[:1])
+    require(Finding(key, f"exists already at line {taken[key]}", f"Give {snippet} another name") for key in known[:1])
 
 
 def _tables(filled: str) -> list[tuple[str, list[str]]]:

@@ -34,8 +34,8 @@ def _tidy(text: str, file: str, address: str, value: str) -> str:
 
 def _shown(text: str, file: str, address: str, value: float, digits: int) -> str:
     if not np.isfinite(value):
-        raise refuse(address, "it is not finite", "Give it a value")
+        raise refuse(address, "must be finite", "Use a finite value")
     found = design(text, file)
     if get(found, address) is None:
-        raise refuse(address, "the description does not state it", "Write it into the text first")
+        raise refuse(address, "missing in the design", "Write it into the text first")
     return show(value, quantity_of(found, address), digits=digits)

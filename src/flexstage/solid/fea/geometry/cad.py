@@ -144,7 +144,7 @@ def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Findin
         groups = [group for group in groups if not group & faces] + [set.union(faces, *touching)]
     if len(groups) > 1:
         names = ", ".join(piece.name for piece in component.pieces)
-        yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Let their outlines touch")
+        yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Make their outlines touch")
 
 
 def _name_solids(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:

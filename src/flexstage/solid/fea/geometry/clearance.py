@@ -67,4 +67,4 @@ def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
 def _advice(first: Piece, second: Piece) -> str:
     if GROUND in {first.body, second.body}:
         return "Trim one of the two outlines"
-    return "Trim one of the two outlines, or move one where that moves no axis"
+    return "Trim one of the two outlines, or move one without moving an axis"

@@ -112,7 +112,7 @@ def _link_answers(piece: Piece, first: _End, second: _End) -> Iterator[Answer]:
     if bad and all(_meeting(shape, half, -end.side, solids[end.side]).sound for end in drawn_ends):
         yield (
             f"it is drawn from {second.body} to {first.body}, but joins {first.body} to {second.body}",
-            "Turn `along` round, or name the two bodies the other way round",
+            "Reverse `along`, or exchange the two bodies",
         )
         return
     for end in drawn_ends:
@@ -153,8 +153,8 @@ def _end_answers(end: _End, meeting: _Meeting) -> Iterator[Answer]:
         )
     if meeting.share < 1.0 - _SHARE:
         yield (
-            f"only {100.0 * meeting.share:.3g} % of its end face lies on {end.body}",
-            f"Widen the outline of {end.body} there, or move it: the whole end face must lie on it",
+            f"only {100.0 * meeting.share:.3g} % of its end face is on {end.body}",
+            f"Widen the outline of {end.body} there, or move it: the whole end face must be on it",
         )
 
 
@@ -163,7 +163,7 @@ def _side_answers(shape: occ.TopoDS_Shape, half: float, end: _End, solid: occ.To
     margin, far = min(0.05, 0.05 * half), 1e3 * half
     inner = shape * occ.Box(occ.Pnt(-half + margin, -far, -far), occ.Pnt(half - margin, far, far))
     if inner.Distance(solid) < 0.5 * margin:
-        yield f"it meets {end.body} beside its end face too", f"Trim the outline of {end.body} beside the link"
+        yield f"it also meets {end.body} outside its end face", f"Trim the outline of {end.body} next to the link"
 
 
 def _body_questions(stage: Stage) -> Iterator[Question]:
@@ -203,10 +203,10 @@ def _gap_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) ->
         away, one, other = min((float(shapes[i].Distance(shapes[j])), i, j) for i in group for j in rest)
         names = ", ".join(pieces[number].name for number in group)
         if away > _GAP:
-            yield f"{names} is {distance_text(away)} away from {pieces[other].name}", "Let the outlines of one body touch over a face"
+            yield f"{names} is {distance_text(away)} away from {pieces[other].name}", "Make the outlines of one body touch over a face"
         else:
             what = f"{names} meets {pieces[other].name} along an edge or at a point only ({pieces[one].name})"
-            yield what, "Let them touch over a face, or overlap"
+            yield what, "Make them touch over a face, or overlap"
 
 
 def _connected_groups(shapes: Sequence[occ.TopoDS_Shape]) -> list[list[int]]:

@@ -70,8 +70,8 @@ def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
 def _shape(part: Shaped) -> Shape:
     found = SHAPES.get(part.kind)
     if found is None:
-        what = "its shape as a solid is not known: nobody offers one for this kind"
-        raise refuse(f"the {part.kind}", what, f"Install the package that does ({SHAPES.group})")
+        what = "no installed package has a solid shape for this kind"
+        raise refuse(f"the {part.kind}", what, f"Install a package with this shape ({SHAPES.group})")
     return found
 
 

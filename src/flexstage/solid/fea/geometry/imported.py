@@ -148,8 +148,8 @@ def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Fin
     for name, said, true, scale, unit in pairs:
         off = float(np.max(np.abs(np.real(said) - true)))
         if off > TOLERANCE * scale:
-            what = f"it is off by {off:.4g} {unit} from the file's: stated {_text(said)}, found {_text(true)} {unit}"
-            yield Finding(f"{where}.{name}", what, 'State what the file holds (see "flexstage import")')
+            what = f"differs from the file by {off:.4g} {unit} (got {_text(said)}, expected {_text(true)} {unit})"
+            yield Finding(f"{where}.{name}", what, 'Use the value of the file (see "flexstage import")')
 
 
 def _text(values: Array) -> str:
@@ -161,7 +161,7 @@ def _version_findings(path: Path, sha256: str) -> Iterator[Finding]:
     found = _sha256(path)
     if found != sha256:
         what = f"the file {path} has another content than stated (sha256 {found[:12]}..., stated {sha256[:12]}...)"
-        yield Finding(str(path), what, 'Give the file that was meant, or state the new one (see "flexstage import")')
+        yield Finding(str(path), what, 'Restore the file, or describe the new one (see "flexstage import")')
 
 
 def _sha256(path: Path) -> str:
@@ -170,7 +170,7 @@ def _sha256(path: Path) -> str:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except (OSError, ValueError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise refuse(str(path), f"it cannot be read: {reason}", "Give the path of a STEP file, from the design file or whole") from None
+        raise refuse(str(path), f"it cannot be read: {reason}", "Give an absolute path, or a path relative to the design file") from None
 
 
 def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
@@ -183,11 +183,11 @@ def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
     try:
         solids = list(occ.OCCGeometry(str(path)).shape.solids)
     except Exception as error:  # noqa: BLE001 (the CAD kernel raises what it likes)
-        raise refuse(str(path), f"the CAD kernel cannot read it ({error})", "Export the solid as STEP (AP214) anew") from None
+        raise refuse(str(path), f"the CAD kernel cannot read it ({error})", "Export the solid as STEP (AP214) again") from None
     names = _names(path, solids)
     if name is None and len(solids) != 1:
-        what = f"it holds {len(solids)} solids: {', '.join(names)}"
-        raise refuse(str(path), what, f'Say which: solid = "{next(iter(names), "")}"; a body may have several')
+        what = f"it contains {len(solids)} solids: {', '.join(names)}"
+        raise refuse(str(path), what, f'Select one: solid = "{next(iter(names), "")}"; a body may have several')
     place = int(name[1:]) if name is not None and re.fullmatch(r"#[0-9]{1,9}", name) else 0
     if name is not None and names.count(name) != 1 and not 0 < place <= len(names):
         what = f'{names.count(name) or "none"} of its solids is called "{name}": they are {", ".join(names)}'

@@ -28,13 +28,13 @@ def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
 
     >>> asked = [Question("a", name, lambda: [("it is loose", "Hold it")]) for name in ("B1/front", "B2/front")]
     >>> [str(finding) for finding in findings_of(asked)]
-    ['B1/front: it is loose (alike: B2/front). Hold it.']
+    ['B1/front: it is loose (also B2/front). Hold it.']
     """
     same: dict[str, list[Question]] = {}
     for question in questions:
         same.setdefault(question.key, []).append(question)
     for first, *others in same.values():
-        alike = f" (alike: {', '.join(other.where for other in others)})" if others else ""
+        alike = f" (also {', '.join(other.where for other in others)})" if others else ""
         for what, advice in first.ask():
             yield Finding(first.where, f"{what}{alike}", advice)
 

@@ -151,14 +151,14 @@ def form_of(link: PlacedLink) -> Form | Finding | None:
     part: Part = link.part
     if isinstance(part, Restricted):
         return Finding(
-            link.name, "some of its freedoms are locked or freed by a restriction", "A solid has all of them: read the unrestricted stage"
+            link.name, "some of its DOFs are locked or freed by a restriction", "Use the unrestricted stage: a solid has all DOFs"
         )
     if isinstance(part, Shaped):
         return part
     if not isinstance(part, Joint) and part.stated(link.material) is not None:
         return None
-    what = f"a part of kind {part.kind} has no shape, and states no stiffness"
-    return Finding(link.name, what, 'Give it a form that can be drawn, or its 6x6 (kind = "compliance_matrix")')
+    what = f"a part of kind {part.kind} has no shape, and specifies no stiffness"
+    return Finding(link.name, what, 'Use a part with a shape, or its 6x6 (kind = "compliance_matrix")')
 
 
 def form_digest(form: Form) -> str:

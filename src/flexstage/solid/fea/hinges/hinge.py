@@ -160,8 +160,8 @@ def hinge_compliance(
         if blunt + _error(part, found) <= asked.error:
             break
     if last is None:
-        what = f"its coarsest mesh has more than the {asked.freedoms} freedoms allowed"
-        raise refuse(_label(part), what, "Ask for --order 3, which begins with order two, or in Python allow more freedoms by its Accuracy")
+        what = f"its coarsest mesh has more than the {asked.freedoms} DOFs allowed"
+        raise refuse(_label(part), what, "Use --order 3, which begins with order two, or in Python increase freedoms of its Accuracy")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
         compliance=alone,
@@ -180,18 +180,18 @@ def hinge_compliance(
 def _refusals(part: Shaped) -> Iterator[Finding]:
     """Parts without a shape, batches, fillets longer than the hinge."""
     if not isinstance(part, Shaped) or is_actuator(part):
-        yield Finding(_label(part), "has no shape, or is no hinge", "Give a hinge of a kind that can be drawn: a notch, neck, leaf, rod")
+        yield Finding(_label(part), "has no shape, or is not a hinge", "Use a hinge with a shape: a notch, neck, leaf, rod")
         return
     profile = part.profile if isinstance(part, Profiled) else None
     for owner in (part, profile):
         for name, value in vars(owner).items() if owner is not None else ():
             sizes = [np.size(each) for each in (value if isinstance(value, tuple) else (value,)) if np.ndim(each) > 0]
             if sizes:
-                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {max(sizes)}", "A solid is one design: read them one by one")
+                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {max(sizes)}", "Compute them separately: a solid is one design")
     if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
         total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
         if 2.0 * radius > total:
-            yield Finding(_label(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
+            yield Finding(_label(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Use 2 r <= l")
 
 
 def _error(part: Shaped, found: Sequence[Array]) -> float:
@@ -266,7 +266,7 @@ def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, ord
 
 
 def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
-    reason = "the mesher was not asked"
+    reason = "the mesher did not run"
     for shrink, grading, curvature in _ATTEMPTS:
         drawn = subject.draw(factor * shrink)
         sizes = {
@@ -280,7 +280,7 @@ def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
         if isinstance(outcome, ngsolve.Mesh):
             return _Mesh(outcome, drawn.mirrors)
         reason = outcome
-    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
+    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Check its proportions")
 
 
 def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.Mesh | str:
@@ -336,6 +336,6 @@ def _not_reached(part: Shaped, error: float, asked: Accuracy) -> Finding:
         return Finding(_label(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _label(part),
-        f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",
-        "Allow more freedoms, or ask for less",
+        f"the error of its 6x6 is {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % required, within {asked.freedoms} DOFs",
+        "Allow more DOFs, or less accuracy",
     )

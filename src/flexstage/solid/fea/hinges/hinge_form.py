@@ -11,8 +11,8 @@ from flexstage.parts.material import Material
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.hinges.roots import Roots
 
-NO_ESTIMATE = "an error is estimated from two solves, and the second would have more unknowns than are allowed"
-LEAVE = "Compare it with beam theory (flexstage verify), or in Python allow hinge_compliance more freedoms by its Accuracy"
+NO_ESTIMATE = "an estimate needs two solves, and the second would exceed the allowed number of unknowns"
+LEAVE = "Compare it with beam theory (flexstage verify), or in Python increase freedoms of the Accuracy of hinge_compliance"
 
 
 class HingeForm(NamedTuple):

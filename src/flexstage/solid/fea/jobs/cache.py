@@ -125,7 +125,7 @@ def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELE
     except (OSError, DesignError) as error:
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
         what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
-        advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
+        advice = f"The result is complete, but not cached: free space there, or set {FOLDER_VARIABLE} to another folder"
         notice(Finding(where, what, advice))
 
 

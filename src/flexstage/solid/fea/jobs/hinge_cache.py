@@ -51,8 +51,8 @@ class HingeJob(StoredJob):
         """Reason why its coarsest mesh does not fit."""
         if self.needed(counts) <= limit:
             return None
-        what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, and {limit / 1e9:.3g} GB are there"
-        return Finding(self.name, what, "Free memory, or let it have more")
+        what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, {limit / 1e9:.3g} GB are available"
+        return Finding(self.name, what, "Free memory, or allow more")
 
     def work(self, call: Call) -> HingeSolid:
         """Compute the 6x6; errors name the hinge as the user does."""

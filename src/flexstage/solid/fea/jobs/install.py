@@ -56,5 +56,5 @@ def _loading() -> Iterator[Finding]:
     try:
         import_module("ngsolve")
     except (ImportError, OSError) as error:  # the type depends on the loader
-        advice = "See what is broken, and the command that mends it, with: flexstage doctor"
+        advice = "Run flexstage doctor for the cause and its remedy"
         yield Finding("the solid model's package ngsolve", f"does not load ({error})", advice)

@@ -125,20 +125,20 @@ def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit:
 
     >>> found = refusal("lever", Counts(1416, 7258, 10580, 4737), Fineness(), 24, 0.5e9)
     >>> found.what
-    'its reduction at order 3 needs about 1.03 GB (79,536 degrees of freedom), and 0.5 GB are there'
+    'its reduction at order 3 needs about 1.03 GB (79,536 degrees of freedom), and 0.5 GB are available'
     >>> found.advice
-    'Ask for order 2, about 0.363 GB, or for larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.403 GB'
+    'Use order 2, about 0.363 GB, or larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.403 GB'
     >>> refusal("half a lever", Counts(1416, 7258, 10580, 4737, sides=2), Fineness(), 24, 0.5e9).what
-    'its reduction at order 3 needs about 1.53 GB (79,536 degrees of freedom of one side), and 0.5 GB are there'
+    'its reduction at order 3 needs about 1.53 GB (79,536 degrees of freedom of one side), and 0.5 GB are available'
     """
     wanted = needed(counts, fineness.order, columns)
     if wanted <= limit:
         return None
     what = f"its reduction at order {fineness.order} needs about {gigabytes(wanted)}"
     size = f"{freedoms(counts, fineness.order):,.0f} degrees of freedom{' of one side' if counts.sides > 1 else ''}"
-    what += f" ({size}), and {gigabytes(limit)} are there"
+    what += f" ({size}), and {gigabytes(limit)} are available"
     smaller = [*_lower_order(counts, fineness, columns, limit), *_larger_elements(counts, fineness, columns, limit)]
-    remedy = f"Ask for {', or for '.join(smaller)}" if smaller else "Free memory, or read its parts one by one"
+    remedy = f"Use {', or '.join(smaller)}" if smaller else "Free memory, or compute its parts separately"
     return Finding(where, what, remedy)
 
 

@@ -163,13 +163,13 @@ class Reduce(ComponentJob):
         found = self.refusal(scaled, memory)
         if found is None and self.seconds(scaled) > seconds:
             what = f"its reduction at order {self.reduction.fineness.order} takes about {duration(self.seconds(scaled))}"
-            found = Finding(self.name, f"{what}, {duration(seconds)} are allowed", "Ask for a lower order (--order 2)")
+            found = Finding(self.name, f"{what}, {duration(seconds)} are allowed", "Use a lower order (--order 2)")
         thin = max(self.component.pieces, key=lambda piece: _thin_elements(piece.form, self.reduction.fineness))
         if found is None or not isinstance(thin.form, Shaped):
             return found
         width, height = (1e3 * float(np.real(each)) for each in (thin.form.throat.width, thin.form.throat.thinnest))
         ratio = f"{thin.name} is {height:.3g} mm thick and {width:.3g} mm wide, 1 to {width / height:.3g}"
-        more = "or make that part thicker or narrower; its theory needs no elements: flexstage analyse"
+        more = "or make that part thicker or narrower, or use theory: flexstage analyse"
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
     def work(self, call: Call) -> Superelement:

@@ -301,16 +301,16 @@ def _failure(child: _Child[AnyJob], code: int) -> Finding:
     if code == 1:
         return _fault(child, child.worker.last_words())
     tried = f", at {child.attempt + 1} sizes of elements" if child.attempt else ""
-    advice = "Ask for elements of another size or order, and report it with the design if it happens again"
+    advice = "Use elements of another size or order, and report it with the design if it happens again"
     if child.stage in {Stage.DRAWING, Stage.MESHING}:
-        advice = "Change the outline or the elements' sizes a little: slivers and faces that nearly touch bring the mesher down"
+        advice = "Change the outline or the elements' sizes a little: slivers and nearly touching faces crash the mesher"
     elif code == -signal.SIGKILL:
-        advice = "Something ended it, as systems do when memory runs out: ask for larger elements or a lower order, or state less memory"
+        advice = "Use larger elements or a lower order, or a smaller --memory: the system probably ran out of memory"
     return Finding(child.job.name, f"its process crashed while {doing} ({_reason(code)}){tried}", advice)
 
 
 def _fault(child: _Child[AnyJob], said: str) -> Finding:
-    advice = "This is a fault of flexstage or its solver: please report it with the design; other sizes of elements may get around it"
+    advice = "Report this fault of flexstage or its solver with the design; other sizes of elements may avoid it"
     return Finding(child.job.name, f"its process failed while {child.stage.value} ({said})", advice)
 
 
@@ -320,21 +320,21 @@ def _reason(code: int) -> str:
 
 
 def _out_of_time(child: _Child[AnyJob], seconds: float) -> Finding:
-    advice = "Ask for larger elements or a lower order, allow more time, or look for slivers, which can keep the mesher busy for ever"
+    advice = "Use larger elements or a lower order, allow more time, or remove slivers, which can block the mesher"
     return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
 
 
 def _memory_full(child: _Child[AnyJob]) -> Finding:
-    advice = "Ask for larger elements or a lower order, or let it have more"
-    return Finding(child.job.name, f"it took more memory while {child.stage.value} than it may", advice)
+    advice = "Use larger elements or a lower order, or allow more memory"
+    return Finding(child.job.name, f"it exceeded its memory while {child.stage.value}", advice)
 
 
 def _disk_full(name: str) -> Finding:
-    advice = "Free some of it, or let the environment variable TMPDIR name a folder with more room"
-    return Finding(name, f"no room is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
+    advice = "Free space, or set the environment variable TMPDIR to a folder with more space"
+    return Finding(name, f"no space is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
 
 
 def _refuse_start(name: str, error: OSError) -> Exception:
     where = tempfile.gettempdir()
-    advice = "See that Python can be started and that the folder for temporary files (environment variable TMPDIR) has room"
+    advice = "Check that Python starts, and that the folder for temporary files (environment variable TMPDIR) has space"
     return refuse(name, f"no process could be started for it in {where} ({error.strerror})", advice)

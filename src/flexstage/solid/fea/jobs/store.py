@@ -60,20 +60,20 @@ def from_bytes(data: bytes, key: str) -> Any:
     """The value of a file's bytes from `to_bytes`; else the problem as text: damaged, of another version, of other content.
 
     >>> from_bytes(b"nonsense", "key")
-    'it is damaged: it does not begin as such files do'
+    'it is damaged: unknown header'
     """
     line, _, body = data.partition(b"\n")
     try:
         head = json.loads(line)
         stated = head.pop("checksum")
     except (ValueError, KeyError, AttributeError, RecursionError):
-        return "it is damaged: it does not begin as such files do"
+        return "it is damaged: unknown header"
     if _checksum(head, body) != stated:
-        return f"it is damaged: its {len(data):,} bytes do not have the checksum it states"
+        return f"it is damaged: wrong checksum of its {len(data):,} bytes"
     if head.get("made") != program():
         return f"it is of another version: {head.get('made')}"
     if head.get("key") != key:
-        return "it holds something else"
+        return "it has other content"
     with np.load(io.BytesIO(body), allow_pickle=False) as arrays:
         return _build(head["tree"], arrays)
 

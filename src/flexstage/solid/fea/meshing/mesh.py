@@ -87,7 +87,7 @@ def mesh_component(
     report(Stage.DRAWING, 0.0)
     subject = _Subject.of(component, by_symmetry=by_symmetry)
     drawing = _drawing(subject)
-    failure = "the mesher was not asked"
+    failure = "the mesher did not run"
     for number in range(first, len(ATTEMPTS)):
         report(Stage.MESHING, number / len(ATTEMPTS))
         outcome = _straight_mesh(subject, replace(fineness, order=1), number)
@@ -108,7 +108,7 @@ def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding
             over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
             what = f"its {thinnest(piece.form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
             more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
-            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or ask for larger elements (Fineness.neck)")
+            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or use larger elements (Fineness.neck)")
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.
     except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
         return str(error)
     mesh = ngsolve.Mesh(raw)
-    return mesh if mesh.ne else "no elements came out"
+    return mesh if mesh.ne else "no elements"
 
 
 def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> PieceMesh | str:
@@ -318,7 +318,7 @@ def _refuse_mesh(component: Component, reason: str) -> Exception:
     return refuse(
         component.name,
         f"no mesh could be made ({reason}); its thinnest piece is {thin.name} with {thinnest(thin.form) * MILLIMETRES:.4g} mm",
-        "Ask for a finer mesh, or look for steps and slivers between outlines that are much smaller than the neck",
+        "Use a finer mesh, or remove steps and slivers between outlines that are much smaller than the neck",
     )
 
 

@@ -295,7 +295,7 @@ def _require_support(model: _Model, elastic: Mapping[str, Contribution]) -> None
         raise refuse(
             "stage",
             f"some motion has no stiffness (lowest scaled eigenvalue {values[0]:.2g}); it moves {moving}",
-            "Join it to the ground: a link whose end face meets neither body, or a unit without foot, leaves it free",
+            "Join it to the ground: check for links without contact, and units without a grounded link",
         )
 
 

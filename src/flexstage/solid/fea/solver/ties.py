@@ -162,11 +162,11 @@ def in_words(stated: Mapping[str, str]) -> str:
     """Number of links of each kind with specified behaviour; empty without any.
 
     >>> in_words({"a": "spring", "b": "spring", "motor": "voice_coil"})
-    '2 springs, 1 voice coil as stated'
+    '2 springs, 1 voice coil as specified'
     """
     counts = Counter(_NOUNS.get(kind, kind.replace("_", " ")) for kind in stated.values())
     said = ", ".join(f"{count} {noun}{'s' if count > 1 else ''}" for noun, count in counts.items())
-    return f"{said} as stated" if said else ""
+    return f"{said} as specified" if said else ""
 
 
 _NOUNS = {

@@ -37,7 +37,7 @@ def pareto_front(study: Study, definition: OptimisationProblem, progress: Progre
     with the designs so far.
     """
     if len(definition.objectives) != 2:
-        raise refuse("optimise", f"found {len(definition.objectives)} objectives", "A front is drawn of two")
+        raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use optimise for one")
     begun = time.monotonic()
     set_up = setting(study, definition)
     counted = Count(progress, "ends of the front")
@@ -50,7 +50,7 @@ def pareto_front(study: Study, definition: OptimisationProblem, progress: Progre
             counted.about = "front"
             found += _between(set_up, found, counted)
         else:
-            counted.about = "looking for limits that contradict"
+            counted.about = "contradictory limits"
             against = contradictions(set_up, [trace.point.shares for trace in traces if trace.point is not None], counted)
     except KeyboardInterrupt:
         interrupted = True

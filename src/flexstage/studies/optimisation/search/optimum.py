@@ -43,7 +43,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     (2, ['stroke.x at least 18 um'])
     """
     if len(definition.objectives) != 1:
-        raise refuse("optimise", f"there are {len(definition.objectives)} objectives", "Draw a front of two with `pareto_front`")
+        raise refuse("optimise", f"must be one objective (got {len(definition.objectives)})", "Use `pareto_front` for two")
     begun = time.monotonic()
     set_up = setting(study, definition)
     problem, begins = set_up.problem, set_up.starts()
@@ -89,7 +89,7 @@ def _conclude(
         if point is not None:
             counted.about = "rounding"
             return (), round_to_steps(set_up, set_up.problem, point), False
-        counted.about = "looking for limits that contradict"
+        counted.about = "contradictory limits"
         ends = [trace.point.shares for trace in traces if trace.point is not None]
         return contradictions(set_up, ends, counted), None, False
     except KeyboardInterrupt:

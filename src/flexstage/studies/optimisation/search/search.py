@@ -149,9 +149,9 @@ def run_searches(
 
     >>> def still():
     ...     yield np.zeros(1)
-    ...     return Trace(reason="stood still")
+    ...     return Trace(reason="no step")
     >>> run_searches([still()], lambda shares: ["no point"] * len(shares))[0].reason
-    'stood still'
+    'no step'
     """
     traces: list[Trace | None] = [None] * len(walks)
     waiting = {number: next(walk) for number, walk in enumerate(walks)}

@@ -90,7 +90,7 @@ def _select_modes(wanted: Modes, values: Array, parts: Array) -> Array:
     else:
         found = np.arange(min(wanted.count + _ROOM, len(values)))
     if len(found) < wanted.count:
-        raise refuse("frequency", f"there are {len(found)} such modes", "Ask for a lower number")
+        raise refuse("frequency", f"the stage has only {len(found)} such modes", "Use a lower number")
     return found
 
 

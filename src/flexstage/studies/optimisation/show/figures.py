@@ -34,7 +34,7 @@ def _histories(ax: Any, found: Optimum) -> None:
     for index, start in enumerate(found.starts):
         heights, kept = start.history[:, 0] * form.factor, start.history[:, 1] <= 1e-8
         color, places = SERIES[index % len(SERIES)], np.arange(len(heights))
-        ax.plot(places, heights, color=color, linewidth=1.0, label="as it stands" if index == 0 else f"Sobol {index}")
+        ax.plot(places, heights, color=color, linewidth=1.0, label="nominal" if index == 0 else f"Sobol {index}")
         ax.plot(places[kept], heights[kept], "o", color=color, markersize=3)
         ax.plot(places[~kept], heights[~kept], "o", markerfacecolor="none", markeredgecolor=color, markersize=3)
     ax.set_xlabel("accepted designs")
@@ -71,7 +71,7 @@ def front_figure(found: Front) -> Any:
         across, up = found.values[:, 1] * forms[1].factor, found.values[:, 0] * forms[0].factor
         ax.plot(across, up, "o-", color=SERIES[0], markersize=4, label="front")
         stands = found.before.values[:2] * np.array([forms[0].factor, forms[1].factor])
-        ax.plot(stands[1], stands[0], "o", markerfacecolor="none", markeredgecolor=INK, label="as it stands")
+        ax.plot(stands[1], stands[0], "o", markerfacecolor="none", markeredgecolor=INK, label="nominal")
         for axis, number in ((ax.set_xlabel, 1), (ax.set_ylabel, 0)):
             each = found.definition.objectives[number]
             axis(f"{each.name} [{forms[number].unit}], {each.direction.value}")

@@ -62,7 +62,7 @@ def nominal(study: Study) -> Array:
     """
     found = study.evaluate(require_valid(study.design))
     named = zip(study.columns, found, strict=True)
-    require(Finding(f"responses.{name}", value, "Ask for what this stage has") for name, value in named if isinstance(value, str))
+    require(Finding(f"responses.{name}", value, "Use measures of this stage") for name, value in named if isinstance(value, str))
     return np.array([float(np.real(value)) for value in found if not isinstance(value, str)])
 
 

@@ -113,7 +113,7 @@ def require_memory(study: Study) -> None:
         "sweep.designs",
         f"the results of {designs:,} designs in {columns} columns",
         designs * each,
-        lambda there: f"Ask for at most {int(there / each):,} designs, or for fewer responses",
+        lambda there: f"Use at most {int(there / each):,} designs, or fewer responses",
     )
 
 
@@ -127,14 +127,14 @@ def _require_ready(target: Path, study: Study, size: int, how: Run) -> None:
     require(name_findings(study))
     require_memory(study)
     if not target.parent.is_dir():
-        raise refuse(os.fspath(target.parent), "there is no such folder", "Create it, or name another")
+        raise refuse(os.fspath(target.parent), "folder not found", "Create it, or name another")
     there = target.exists() or pending_pieces(target)
     if there and not how.resume:
-        raise refuse(os.fspath(target), "results are there already", "Resume (--resume), or name another file")
+        raise refuse(os.fspath(target), "file exists already", "Resume (--resume), or name another file")
     if target.exists():
         require(differences(target, study, size))
     if how.workers is not None and how.workers < 1:
-        raise refuse("workers", f"found {how.workers}", "Give 1 or more")
+        raise refuse("workers", f"must be at least 1 (got {how.workers})", "Use 1 or more")
     require_room(target, study)
 
 
@@ -145,7 +145,7 @@ def _pieces(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, worke
             yield start
     except CallError as failed:
         start, stop = failed.arguments
-        what, advice = ("processes died over them again and again", "Free memory and resume")
+        what, advice = ("processes crashed repeatedly", "Free memory and resume")
         if isinstance(failed.error, DesignError):
             what, advice = " ".join(str(failed.error).split()), "Mend it and resume"
         elif failed.error is not None:

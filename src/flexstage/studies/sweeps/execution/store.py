@@ -33,9 +33,9 @@ _FRAME, _ENTRY = 100_000, 64
 """Size of a results file besides numbers and reasons [B]: its frame, the entry of a failure."""
 
 _ABOUT = (
-    "Designs of a study, one a row of variables and responses, in SI by their attributes names, units and of (what they are; variables in "
-    "1 may be factors on what the design states). NaN: not computed yet (computed says which pieces are, of piece rows each), or "
-    "failed (1 in failed, reasons in failures). study is the study's file, facts what the numbers depend on, made what computed them. "
+    "Designs of a study, one in each row of variables and responses. Units are SI; attributes: names, units, and of (address or measure). "
+    "Variables in 1 may be factors on the design's values. NaN: not computed (mask computed, pieces of piece rows) or "
+    "failed (mask failed, reasons in failures). study: the study's file; facts: inputs of the numbers; made: versions. "
     "In Python: flexstage.studies.sweeps.execution.store.read_results, then to_xarray() or to_pandas()."
 )
 
@@ -142,7 +142,7 @@ def read_piece(path: Path) -> Piece:
     except FileNotFoundError:
         raise
     except (OSError, ValueError, KeyError, EOFError, BadZipFile):
-        raise refuse(os.fspath(path), "it is no piece of results, or damaged", "Take it away and resume: it is computed again") from None
+        raise refuse(os.fspath(path), "not a piece of results, or damaged", "Remove it and resume: it is computed again") from None
 
 
 def pending_pieces(path: Path) -> dict[int, Path]:
@@ -179,14 +179,14 @@ def open_results(path: Path) -> Hdf:
     path.stat()
     file = hdf(path)
     if file.attributes.get("format") != FORMAT:
-        raise refuse(os.fspath(path), "it holds no results of a study", f'Name another file: its format is to be "{FORMAT}"')
+        raise refuse(os.fspath(path), "it contains no results of a study", f'Use a file of the format "{FORMAT}"')
     require(_damage_findings(file))
     return file
 
 
 def _damage_findings(file: Hdf) -> Iterator[Finding]:
     """Missing or invalid parts of a results file."""
-    advice = "It was changed or is damaged: take it away, or name another file"
+    advice = "It is damaged: remove it, or name another file"
     attributes = file.attributes
     wrong = [key for key in ("planned", "piece") if not _is_count(attributes.get(key))] + ["study"] * (
         not isinstance(attributes.get("study"), str)
@@ -199,14 +199,14 @@ def _damage_findings(file: Hdf) -> Iterator[Finding]:
     for name, shape in {**shapes, "computed": (-(-planned // size),), "failed": (planned,)}.items():
         found = file.arrays.get(name)
         if found is None or found.shape != shape or found.kind not in ("f", "u", "i", "b"):
-            yield Finding(f"{file.path}: {name}", f"shape {found.shape if found else 'none'} where {shape} is expected", advice)
+            yield Finding(f"{file.path}: {name}", f"wrong shape (got {found.shape if found else 'none'}, expected {shape})", advice)
     if "failures" not in file.arrays or dict(file.arrays["failures"].columns) != {"design": "i", "reason": "t"}:
-        yield Finding(f"{file.path}: failures", "it has no designs and reasons", advice)
+        yield Finding(f"{file.path}: failures", "designs and reasons missing", advice)
     if "facts" not in file.groups:
-        yield Finding(f"{file.path}: facts", "they are not there", advice)
+        yield Finding(f"{file.path}: facts", "missing", advice)
     for name in ("variables", "responses"):
         if len(_labels(file, name, "units")) != shapes[name][1]:
-            yield Finding(f"{file.path}: {name}", "it has not as many units as names", advice)
+            yield Finding(f"{file.path}: {name}", "number of units differs from names", advice)
 
 
 def _is_count(value: Attribute | None) -> bool:
@@ -232,7 +232,7 @@ def read_results(path: str | os.PathLike[str]) -> Results:
             return _read(open_results(target), pieces)
         except FileNotFoundError:
             continue
-    raise refuse(where, "its pieces are gathered faster than they can be read", "Try again")
+    raise refuse(where, "its pieces change during reading", "Try again")
 
 
 @dataclass(frozen=True, eq=False)
@@ -352,7 +352,7 @@ def require_room(path: Path, study: Study) -> None:
     there = path.stat().st_size if path.exists() else 0
     missing, free = 2 * whole - min(there, whole), shutil.disk_usage(path.parent).free
     if free < missing:
-        what = f"the results need {missing / 1e6:.4g} MB more while they are gathered, {free / 1e6:.4g} MB are free"
+        what = f"the results need {missing / 1e6:.4g} MB more while they are combined, {free / 1e6:.4g} MB are free"
         raise refuse(os.fspath(path.parent), what, "Free space and resume (--resume), or name a file elsewhere")
 
 
@@ -396,4 +396,4 @@ def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
     for key in dict.fromkeys((*before, *now)):
         if before.get(key) != now.get(key):
             what = f"{key} was {before.get(key, 'absent')} and is {now.get(key, 'absent')}"
-            yield Finding(os.fspath(path), what, "Resume with the study as it was, or name another file")
+            yield Finding(os.fspath(path), what, "Resume with the original study, or name another file")

@@ -21,8 +21,8 @@ from flexstage.studies.sweeps.show.figures import designs_figure, effects_figure
 from flexstage.studies.sweeps.show.interaction_figures import strongest_figure
 from flexstage.studies.sweeps.show.tables import failure_table, limit_notes, pair_table, share_table, variable_table
 
-_STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
-_STRONGEST = "The strongest pairs: where lines are not parallel, one variable decides what the other does. Above: share of variance."
+_STEEP = "All panels of a row have one scale. Means over designs, the other variables vary in their ranges."
+_STRONGEST = "The strongest pairs: lines that are not parallel show interaction. Above: share of variance."
 
 
 def sweep_report(sweep: Sweep) -> str:
@@ -37,7 +37,7 @@ def sweep_report(sweep: Sweep) -> str:
         stage_section(data),
         section("Responses", [result_table(sweep.responses, notes=limit_notes(study, results)), designs]),
         caveat_section(study.design, loaded_findings(study)),
-        section("What was varied", [variable_table(study, results)]),
+        section("Variables", [variable_table(study, results)]),
         section("Effects", [share_table(found), effects]),
         section("Interactions", _interactions(study, found)),
         section("Designs without values", [failure_table(results)] if results.failures else []),
@@ -58,13 +58,13 @@ def _headline(study: Study, results: Results) -> Headline:
     if not study.limits or not count:
         return Headline(f"{said}.")
     kept = int(np.sum(study.feasible(results.responses)))
-    return Headline(f"{said}; {kept} keep all limits.", kept > 0)
+    return Headline(f"{said}; {kept} meet all limits.", kept > 0)
 
 
 def _parallel(study: Study, found: Effects) -> str:
     """Caption of the designs over parallel axes."""
-    text = f"Each line is a design; colour by {found.responses[0]}, from dark where it is least to yellow where it is largest"
-    return f"{text}; grey ones do not keep the limits." if study.limits else f"{text}."
+    text = f"Each line is a design; colour by {found.responses[0]}, from dark (minimum) to yellow (maximum)"
+    return f"{text}; grey: limits not met." if study.limits else f"{text}."
 
 
 def _interactions(study: Study, found: Effects) -> list[Block]:

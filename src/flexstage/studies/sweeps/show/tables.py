@@ -58,7 +58,7 @@ def limit_notes(study: Study, results: Results) -> list[str]:
     alone = {f"{each.key} {each.text}": study.feasible(results.responses, (each,)) for each in study.limits}
     never = [text for text, met in alone.items() if not np.any(met)]
     if never:
-        return [f"No design meets {' nor '.join(never)}: widen the ranges, or ask for less."]
+        return [f"No design meets {' nor '.join(never)}: widen the ranges, or reduce the requirements."]
     pairs = [pair for pair in combinations(alone, 2) if not np.any(alone[pair[0]] & alone[pair[1]])]
     told = "; ".join(f"{first} and {second}" for first, second in pairs)
     return [f"No design meets all limits at once{f': no design meets both {told}' if told else ''}."]
@@ -68,7 +68,7 @@ def share_table(found: Effects) -> Table:
     """First-order and, if known, total indices."""
     columns: list[Column | str] = ["variable"]
     for name in found.responses:
-        columns += [Column(name, "alone")] + ([] if found.total is None else [Column(name, "in all")])
+        columns += [Column(name, "first order")] + ([] if found.total is None else [Column(name, "total")])
     rows = []
     for row, variable in enumerate(found.variables):
         cells: list[Cell | str] = [Cell(variable, Mark.STRONG)]
@@ -76,9 +76,11 @@ def share_table(found: Effects) -> Table:
             cells.append(share_cell(float(found.first[row, column])))
             cells += [] if found.total is None else [share_cell(float(found.total[row, column]))]
         rows.append(cells)
-    note = "Alone: share of the response's variance by the variable alone"
-    note += "; in all: with its interactions." if found.total is not None else "; what is left is interaction."
-    return make_table("What does it", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)])
+    note = "First order: share of the response's variance by the variable alone"
+    note += "; total: with its interactions." if found.total is not None else "; the residual is interaction."
+    return make_table(
+        "Variance contributions", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)]
+    )
 
 
 def _error_note(found: Effects, order: int) -> list[str]:
@@ -100,7 +102,7 @@ def pair_table(found: Effects) -> Table:
         for first, second in shown_pairs
     ]
     less = "No pair" if not rows else "No other pair"
-    notes = ["Share of variance that only both together explain.", f"{less} explains 1 % of anything." if len(rows) < _MOST_PAIRS else ""]
+    notes = ["Share of variance explained only by both together.", f"{less} explains 1 % of a response." if len(rows) < _MOST_PAIRS else ""]
     notes += _error_note(found, 1)
     return make_table(
         "Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=[note for note in notes if note]
@@ -127,6 +129,6 @@ def failure_table(results: Results) -> Table:
     ranked = sorted(reasons.values(), key=lambda designs: -len(designs))
     rows = [(number(len(designs)), str(designs[0]), results.failures[designs[0]]) for designs in ranked[:_MOST_FAILURES]]
     rest = len(ranked) - _MOST_FAILURES
-    notes = ["Reasons that differ in numbers only are told once, as the first design has them; the results file holds all."]
+    notes = ["Reasons that differ only in numbers are listed once; the results file contains all."]
     notes += [f"{rest} further reasons are in the results file."] if rest > 0 else []
     return make_table("Designs without values", [Column("designs"), Column("first"), "reason"], rows, notes=notes)
