@@ -73,13 +73,13 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | No
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
     data = buckling_data(mechanism, known, after) if known else still_data(mechanism)
     sections = [
-        section("What gives way", buckling_tables(found)),
+        section("Buckling", buckling_tables(found)),
         None if after is None else _beyond_section(after.stroke),
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
     ]
     headline = Headline(to_typography(_buckling_text(found)), least is None or least.factor >= max(1.0, found.demand))
     said = "The amplitude of the mode is arbitrary: the slider sets it." if known else ""
-    return _page(mechanism, "What gives way", found.provenance, headline, data, sections=sections, said=said)
+    return _page(mechanism, "Buckling", found.provenance, headline, data, sections=sections, said=said)
 
 
 def _buckling_text(found: CaseFactors) -> str:

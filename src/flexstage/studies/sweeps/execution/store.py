@@ -30,7 +30,7 @@ FORMAT = "flexstage results 1"
 _ATTEMPTS = 20
 _PIECES = ".pieces"
 _FRAME, _ENTRY = 100_000, 64
-"""Size of a results file besides numbers and reasons [B]: its frame, the entry of a failure."""
+"""Size of a results file without numbers and reasons [B]: its frame, the entry of a failure."""
 
 _ABOUT = (
     "Designs of a study, one in each row of variables and responses. Units are SI; attributes: names, units, and of (address or measure). "
