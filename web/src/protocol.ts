@@ -5,7 +5,7 @@
  *
  * A message is a JSON object whose `kind` is the class's name in small letters. The page sends requests, each with a unique `id`; the
  * answer contains it as `to`. Every request has an answer (`Done` without a result, `Refusal` if it is refused), in the order of
- * the requests except for `Drag` and `Pose`: the newest is answered, and older ones are `Done`. Everything else is pushed to all
+ * the requests except for `Drag` and `Pose`. Of these the newest is answered, and older ones are `Done`. Everything else is pushed to all
  * pages when it changes. Numbers are in SI units, null if unknown.
  */
 export const VERSION = 4;
@@ -97,7 +97,7 @@ export interface ModeShape {
 /**
  * A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` its name in a viewer.
  *
- * `theory` is the number of the paired mode of theory, absent without one: its `theory_frequency` [Hz],
+ * `theory` is the number of the paired mode of theory, absent without one. Further fields are its `theory_frequency` [Hz],
  * its relative difference from that of finite elements, and the modal assurance of the two.
  */
 export interface SolidMode {
