@@ -172,7 +172,7 @@ def test_its_shape_is_all_that_finite_elements_need(work, package):
 def test_without_a_shape_it_is_not_known_to_finite_elements(work, tmp_path):
     package = installed(tmp_path, without="flexstage.shapes")
     told = flexstage(work, "solid small.toml --scope hinge", "check small.toml", path=package, ok=2)
-    assert "leaf: its shape as a solid is not known: nobody offers one for this kind. Install the package that does" in told
+    assert "leaf: no installed package has a solid shape for this kind. Install a package with this shape" in told
     assert "no findings" in told
 
 

@@ -80,7 +80,7 @@ def test_what_is_no_record_is_refused(
     ("option", "target", "said"),
     [
         ("--json", "record.uff", "record.uff is read by this command"),
-        ("--json", "missing/out.json", "there is no folder missing"),
+        ("--json", "missing/out.json", "folder missing not found"),
         ("--json", "folder", "it is a folder"),
         ("--json", "/dev/full", "No space left on device"),
     ],

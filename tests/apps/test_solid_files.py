@@ -64,7 +64,7 @@ def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("-o", "nowhere/a.step"), "there is no folder nowhere"),
+        (("-o", "nowhere/a.step"), "folder nowhere not found"),
         (("-o", "stage.toml"), "read by this command"),
         (("-o", "."), "it is a folder"),
         (("-o", "a", "--gltf", "./a"), "the output of --output"),

@@ -31,7 +31,7 @@ def study_file(tmp_path):
 def test_tolerance_shows_and_writes(study_file, tmp_path, flexstage):
     done = flexstage("tolerance", "study.toml", "-o", "r.h5", "--report", "r.html", "--json", "r.json", "--workers", "1")
     assert done.code == 0, done.err
-    for said in ("All together", "What is allowed", "Crosstalk", "+-5 um", "common to 4"):
+    for said in ("All requirements", "Allowable tolerances", "Crosstalk", "+-5 um", "common to 4"):
         assert said in done.out
     told = json.loads((tmp_path / "r.json").read_text())
     assert told["copies"] == {"computed": 40, "failed": 0}

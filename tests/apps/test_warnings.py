@@ -62,8 +62,8 @@ def test_what_is_taken_by_default_stands_apart(flexstage: Command, tmp_path: Pat
     document = json.loads((tmp_path / "out.json").read_text())
     assert document["warnings"] == []
     assert [each["what"] for each in document["defaults"]] == ["stack mass 0 by default"]
-    assert ended.out.startswith("Taken by default\n\n  parts.stack_vertical: stack mass 0 by default. ")
-    assert "Taken by default" not in flexstage("mapping", "stage.toml", *massless).out, "mappings weigh nothing"
+    assert ended.out.startswith("Default values\n\n  parts.stack_vertical: stack mass 0 by default. ")
+    assert "Default values" not in flexstage("mapping", "stage.toml", *massless).out, "mappings weigh nothing"
 
 
 def test_the_mass_of_a_restricted_part_is_named() -> None:

@@ -227,13 +227,13 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     assert page.evaluate(colours) == green
 
 
-@pytest.mark.parametrize("button", ["take them back", "discard them"])
+@pytest.mark.parametrize("button", ["restore them", "discard them"])
 def test_unsaved_changes_of_a_studio_that_ended_are_offered(page: Page, server: Server, button: str) -> None:
     server.say(replace(state(1), drafts=(Draft("a.json", 1.7e9, True),), unprotected="the disk is full"))
     until(page, lambda: "the file was changed since" in page.inner_text("#drafts"))
     assert "the disk is full" in page.inner_text("#changed")
     page.get_by_role("button", name=button).click()
-    until(page, lambda: [(each["draft"], each["keep"]) for each in server.of("recover")] == [("a.json", button == "take them back")])
+    until(page, lambda: [(each["draft"], each["keep"]) for each in server.of("recover")] == [("a.json", button == "restore them")])
     server.say(state(1))
     until(page, lambda: page.inner_text("#drafts") == "")
 

@@ -102,8 +102,8 @@ def test_addresses_are_written_on_top_of_parameters():
         ('arm = { parameter = "plate.side", from = "1 mm", to = "2 mm" }', "The nearest name is plate_side"),
         ('arm = { parameter = "short_arm", from = "1 kg", to = "2 kg" }', "a length is expected"),
         ('arm = { parameter = ["short_arm", "vertical_turn"], from = "1 mm", to = "2 mm" }', "different quantities"),
-        (NECK + 'b = { address = "parts.neck.thickness", from = "1 mm", to = "2 mm" }', "which variable b sets too"),
-        (NECK + 'b = { parameter = "neck_thickness", from = "-1 %", to = "1 %" }', "already moved by a"),
+        (NECK + 'b = { address = "parts.neck.thickness", from = "1 mm", to = "2 mm" }', "as variable b does"),
+        (NECK + 'b = { parameter = "neck_thickness", from = "-1 %", to = "1 %" }', "already set by a"),
     ],
 )
 def test_bad_parameters_of_variables_are_told(line, told):

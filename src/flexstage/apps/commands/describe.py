@@ -39,7 +39,7 @@ from flexstage.studies.synthesis.specification import specification_schema
 
 DEFAULT_CASE = "double-triangle"
 SCHEMA_FILE = "flexstage.schema.json"
-"""Where the first line of a new design file tells editors to look for the schema: beside it, as `flexstage schema > FILE` writes it."""
+"""File of the schema in the first line of a new design file, for editors: in the same folder, from `flexstage schema > FILE`."""
 
 
 def new(
@@ -85,7 +85,7 @@ def _heading(case: str, summary: str, target: str, stated: Mapping[str, str]) ->
         f"{case}: {summary}.\n"
         + "".join(f"Parameter {name} = {value}.\n" for name, value in stated.items())
         + f"flexstage check {target}     flexstage analyse {target} --report report.html\n"
-        f"flexstage schema > {Path(target).with_name(SCHEMA_FILE)}     lets an editor check this file while you type.\n"
+        f"flexstage schema > {Path(target).with_name(SCHEMA_FILE)}     is for editors that check this file during typing.\n"
         "Every physical value carries a unit. tags say where a value comes from: stated, derived or assumed (untagged), and the source."
     )
 

@@ -13,7 +13,7 @@ from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_ta
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
-    """What the platform reaches and what that asks of actuators and gauges; `None` where strokes do not determine the platform.
+    """Workspace of the platform, and use of actuators and gauges; `None` if the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -40,7 +40,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
 
 
 def strength_section(analysis: Analysis) -> Section | None:
-    """Forces, stress, buckling, loads and clearance; `None` where none is known.
+    """Forces, stress, buckling, loads and clearance; `None` if none is known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -59,7 +59,7 @@ def strength_section(analysis: Analysis) -> Section | None:
 
 def _strength(reach: Workspace) -> list[Block | None]:
     stressed = reach.stress is not None and bool(reach.stress.links)
-    text = "Stress, buckling and loads count from the stage relaxed without voltage, over all corners of the strokes, dead load included."
+    text = "Stress, buckling and loads are relative to the stage without voltage, over all corners of the strokes, with permanent load."
     return [
         Prose(text) if stressed else None,
         weakest_first(reach.stress),
