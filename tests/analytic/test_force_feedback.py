@@ -340,7 +340,7 @@ def test_damping_that_is_not_reached_is_said():
 
 BAD = {
     "no stack is in a leg": ("voice-coil-stage", DampingSetup()),
-    "the stage has no strain gauge of this name": ("parallelogram", DampingSetup(gauges=("Q",))),
+    "unknown strain gauge": ("parallelogram", DampingSetup(gauges=("Q",))),
     "both a damping ratio and a gain are given": ("parallelogram", DampingSetup(ratio=0.3, gain=100.0)),
     "damping.rate: 25000 Hz is 2.5 times the rate of the loop": ("parallelogram", DampingSetup(rate=25e3)),
 }

@@ -160,13 +160,13 @@ def test_every_reason_is_told():
         (lambda: PrandtlIshlinskii([1.0], [1.0]), "first threshold of axis 0 is 1"),
         (lambda: PrandtlIshlinskii([0.0, 2.0, 2.0], [1.0, 1.0, 1.0]), "threshold 2 of axis 0, 2, follows 2"),
         (lambda: PrandtlIshlinskii([0.0, 2.0], [1.0]), "thresholds are (1, 2), weights (1, 1)"),
-        (lambda: PrandtlIshlinskii([0.0], [np.nan]), "not finite"),
+        (lambda: PrandtlIshlinskii([0.0], [np.nan]), "must be finite"),
         (lambda: PrandtlIshlinskii([0.0], [1.0], Envelope(np.tile([0.0, 1.0], (2, 1)), np.tile([0.0, 1.0], (2, 1)))), "2 axes"),
         (lambda: Envelope([0.0, 0.0], [0.0, 1.0]), "knot 1 of axis 0 at 0 follows 0"),
         (lambda: Envelope([0.0], [0.0]), "at least two"),
-        (lambda: Envelope([0.0, np.inf], [0.0, 1.0]), "not finite"),
+        (lambda: Envelope([0.0, np.inf], [0.0, 1.0]), "must be finite"),
         (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.zeros((3, 2))), "(3, 2) for 1 axes"),
-        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.array([np.nan])), "not finite"),
+        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.array([np.nan])), "must be finite"),
     ],
 )
 def test_models_that_are_none_are_refused(make, words):

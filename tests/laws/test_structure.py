@@ -295,7 +295,7 @@ def test_a_unit_like_another_follows_it_and_files_keep_the_relation():
 @pytest.mark.parametrize(
     ("like", "said"),
     [
-        ("iner", 'units.outer.like: there is no unit "iner". The nearest name is inner'),
+        ("iner", 'units.outer.like: unknown unit "iner". Use inner'),
         ("outer", "units.outer.like: it is like itself."),
     ],
 )
@@ -346,7 +346,7 @@ def strut(**place):
         ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.031)}, "from and to are 31 mm apart, and part wire is 30 mm long"),
         ({"start": (0.0, 0.0, 0.0)}, "links.strut: it has no to."),
         ({"at": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.03)}, "it has both at and to"),
-        ({"at": (0.0, 0.0, 0.0)}, 'it has no along. Write for example along = "x"'),
+        ({"at": (0.0, 0.0, 0.0)}, 'it has no along. Use e.g. along = "x"'),
         ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.0)}, "from and to are 0 mm apart, and part wire is 30 mm long"),
     ],
 )

@@ -361,7 +361,7 @@ WRONG = {
         "26 x 26, 25 x 25",
     ),
     "not symmetric": (lambda body: broken(body, stiffness=skew(body.stiffness)), "it is not symmetric: entry (1, 9)"),
-    "not finite": (lambda body: broken(body, mass=np.full_like(body.mass, np.nan)), "676 of its entries are no finite numbers"),
+    "must be finite": (lambda body: broken(body, mass=np.full_like(body.mass, np.nan)), "676 of its entries are no finite numbers"),
     "negative mass": (lambda body: broken(body, mass=-body.mass), "negative"),
     "negative in one motion": (lambda body: broken(body, mass=body.mass - 3.0 * np.diag([0.0] * 18 + [1.0] * 8)), "negative"),
     "negative stiffness": (lambda body: broken(body, stiffness=-body.stiffness), "no or negative stiffness"),
@@ -424,7 +424,7 @@ def test_mass_on_some_directions_alone_is_told(tmp_path):
 
 
 FILES = {
-    "missing": (lambda path: path.unlink(), "there is no such file"),
+    "missing": (lambda path: path.unlink(), "file not found"),
     "truncated": (lambda path: path.write_bytes(path.read_bytes()[:5000]), "it cannot be read as an NPZ file"),
     "damaged": (lambda path: path.write_bytes(path.read_bytes()[:3000] + bytes(200) + path.read_bytes()[3200:]), ""),
     "of text": (lambda path: path.write_text("stiffness"), "it cannot be read as an NPZ file"),

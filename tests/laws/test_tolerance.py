@@ -342,8 +342,8 @@ def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
 
 
 BAD = {
-    'w = { address = "hinge.thickness", normal = "1 um" }': 'there is no "hinge". The nearest name is hinges.',
-    'w = { address = "leaf.thicknes", normal = "1 um" }': "The nearest name is thickness",
+    'w = { address = "hinge.thickness", normal = "1 um" }': 'unknown name "hinge". Use hinges.',
+    'w = { address = "leaf.thicknes", normal = "1 um" }': "Use thickness",
     'w = { address = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
     'w = { address = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
     'w = { address = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard",
@@ -355,7 +355,7 @@ BAD = {
     'w = { address = "leaf.thickness", normal = "1 mrad" }': "mrad",
     'w = { address = "materials.steel.young", normal = "1 %", independent = true }': "is one number, and has no copies",
     'w = { address = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "they are of different quantities",
-    'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
+    'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "unknown key",
     'w = { address = "stacks.stroke", normal = "1 %" }': "the design has none of this kind",
     'w = { address = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
 }

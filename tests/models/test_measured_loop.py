@@ -197,7 +197,7 @@ def test_a_record_of_another_stage_is_refused() -> None:
         loop_study(parallelogram(), SETUP, test=swept(parallelogram(), lines, 0.0, faster=1.9))
     found = swept(parallelogram(), lines, 0.0).found
     renamed = replace(found, outputs=tuple(replace(each, name=f"T{each.name}") for each in found.outputs))
-    with pytest.raises(DesignError, match="no output of the record is called so"):
+    with pytest.raises(DesignError, match="unknown output of the record"):
         loop_study(parallelogram(), SETUP, test=Identification(found.responses, renamed))
     volts = replace(found, inputs=tuple(replace(each, unit="V") for each in found.inputs))
     with pytest.raises(DesignError, match='its unit is "V", where the loop has m'):

@@ -67,7 +67,7 @@ def test_files_on_disk(tmp_path):
         (HEAD + PLAYS + 'envelope = { volts = ["0 V", "9 V"], effective = ["0 V"] }', "Give as many of both"),
         (HEAD + PLAYS + 'offset = "1 um"\nouter = { plays = ["0 um", "1 um"], strokes = ["0 um", "1 um"] }', "beside an outer envelope"),
         (HEAD + PLAYS + 'creep = { rate = 0.02, reference = "0 s" }', "creep.reference"),
-        (HEAD + PLAYS + "threshold = 3", "line 4: threshold: this key is not known"),
+        (HEAD + PLAYS + "threshold = 3", ":4: threshold: unknown key"),
     ],
 )
 def test_mistakes_are_named(text, words):

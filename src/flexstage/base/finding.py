@@ -1,6 +1,8 @@
-"""Findings: what is wrong with a user's input, told so that it can be mended.
+"""Findings: faults in a user's input, each with a message of one form.
 
-A check returns findings (ask); `require` raises them together as one `DesignError` (throw).
+The form is `KEY: PROBLEM (got VALUE, expected CONDITION). HINT.`; the key may begin with file and line.
+
+A check returns findings; `require` raises them together as one `DesignError`.
 """
 
 from __future__ import annotations
@@ -12,21 +14,23 @@ from typing import Any
 
 from flexstage.base.renamed import new_name
 
+_SUGGESTIONS = 6
+
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing wrong: the user's object (`B4/pivot`, or file and key), what was found with the numbers compared, and what to do."""
+    """One fault: file, line and key or the user's object (`B4/pivot`), the problem with its value, and an imperative hint."""
 
     where: str
     what: str
     advice: str
 
     def __str__(self) -> str:
-        return f"{self.where}: {self.what}. {self.advice}."
+        return f"{self.where}: {self.what}.{f' {self.advice}.' if self.advice else ''}"
 
 
 class DesignError(ValueError):
-    """All findings that keep a description, a file or a question from being answered."""
+    """All faults found in a description, a file or a request."""
 
     def __init__(self, findings: Iterable[Finding]) -> None:
         self.findings = tuple(findings)
@@ -37,7 +41,7 @@ class DesignError(ValueError):
 
 
 class LowerBoundError(DesignError):
-    """A quantity that is at least `bound`, and not known beyond."""
+    """A quantity of which only a lower bound, `bound`, is known."""
 
     def __init__(self, findings: Iterable[Finding], bound: float) -> None:
         super().__init__(findings)
@@ -81,7 +85,7 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def name_first(names: Sequence[str], most: int = 8) -> str:
-    """The first of some names, and how many more there are.
+    """The first names, and the number of the others.
 
     >>> name_first(["b2"]), name_first(["b2", "b3", "b4", "b5"], most=2)
     ('b2', 'b2, b3 and 2 more')
@@ -89,19 +93,34 @@ def name_first(names: Sequence[str], most: int = 8) -> str:
     return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
-def suggest_nearest(name: str, names: Iterable[str]) -> str:
-    """Advice that names what is near to a misspelt or renamed name, or what there is.
+def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> str:
+    """Hint for an unknown name: its new name, at most six similar names (the nearest first), else `otherwise`, else known names.
 
     >>> suggest_nearest("plattform", ["ground", "platform"]), suggest_nearest("xyz", ["ground", "platform"])
-    ('The nearest name is platform', 'There are ground, platform')
+    ('Use platform', 'Use ground or platform')
     """
-    known = sorted(set(names))
+    known = list(dict.fromkeys(names))
     renamed = new_name(name, known)
     if renamed is not None:
-        return f"It is called {renamed}"
-    close = difflib.get_close_matches(name[:80], known, n=3, cutoff=0.6)
-    if close:
-        return f"The nearest name is {close[0]}" if len(close) == 1 else f"Near to it are {', '.join(close)}"
+        return f"Use {renamed}"
+    lowered = {each.lower(): each for each in reversed(known)}
+    word = name[:80].lower()
+    begin = [each for each in lowered if len(word.strip("-")) > 2 and each.startswith(word)]
+    close = difflib.get_close_matches(word, lowered, n=_SUGGESTIONS, cutoff=0.6)
+    similar = [lowered[each] for each in dict.fromkeys([*begin, *close])][:_SUGGESTIONS]
+    if otherwise and not similar:
+        return otherwise
     if not known:
-        return "There are none"
-    return f"There are {', '.join(known[:12])}{' and more' if len(known) > 12 else ''}"
+        return "None is defined"
+    if similar or len(known) <= _SUGGESTIONS:
+        return f"Use {list_choices(similar or known)}"
+    return f"Use e.g. {list_choices(known[:3])}"
+
+
+def list_choices(names: Sequence[str]) -> str:
+    """Names as alternatives.
+
+    >>> list_choices(["x", "y", "z"]), list_choices(["x"])
+    ('x, y or z', 'x')
+    """
+    return " or ".join([*filter(None, [", ".join(names[:-1])]), *names[-1:]])

@@ -59,7 +59,7 @@ def find_section(catalogue: Catalogue, name: str) -> Catalogue:
     ['Gauge']
     """
     if name not in _SECTIONS.values():
-        raise refuse(name, "the catalogue has no such section", suggest_nearest(name, _SECTIONS.values()))
+        raise refuse(name, "unknown section", suggest_nearest(name, _SECTIONS.values()))
     return replace(catalogue, sections=tuple(section for section in catalogue.sections if _SECTIONS[section.record] == name))
 
 

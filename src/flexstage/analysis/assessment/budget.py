@@ -54,7 +54,7 @@ def budget(
     """
     assembly = expand(mechanism)
     if at != PLATFORM and at not in assembly.points:
-        raise refuse(at, "no point of this name is in the description", suggest_nearest(at, (PLATFORM, *assembly.points)))
+        raise refuse(at, "unknown point", suggest_nearest(at, (PLATFORM, *assembly.points)))
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
         raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")

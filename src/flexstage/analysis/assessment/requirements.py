@@ -189,7 +189,7 @@ def _measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     if match["path"] is None:
         return Measure(match["key"], kind, name, quantity, point)
     if match["path"] not in mechanism.paths:
-        raise refuse(where, f'there is no path "{match["path"]}"', suggest_nearest(match["path"], mechanism.paths))
+        raise refuse(where, f'unknown path "{match["path"]}"', suggest_nearest(match["path"], mechanism.paths))
     return Measure(f"{match['key']} over {match['path']}", over(kind), name, quantity, point, path=match["path"])
 
 
@@ -232,5 +232,5 @@ def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[M
         if fits and (name in names[placeholder] or _accepts_name(placeholder, name, where)):
             return measure_kind(form), name
     known = [spelt for form in MEASURES for spelt in _keys_of_form(form, names)]
-    advice = f"{suggest_nearest(key, known)}. A measure that another package offers is known where that package is installed"
+    advice = f"{suggest_nearest(key, known)}. Install the package of the measure, if another package provides it"
     raise refuse(where, f'there is no measure called "{key}"', advice)

@@ -96,5 +96,5 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
 def _check(frequencies: Array) -> Array:
     grid = np.asarray(frequencies, dtype=float)
     if grid.ndim != 1 or not np.all(np.isfinite(grid)) or np.any(grid < 0.0):
-        raise refuse("frequencies", f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}", "Mend the list")
+        raise refuse("frequencies", f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}", "Correct the list")
     return grid

@@ -60,7 +60,7 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
     assembly = expand(mechanism)
     places = twist_places(assembly)
     if point not in places:
-        raise refuse(point, "no point of this name is in the description", suggest_nearest(point, places))
+        raise refuse(point, "unknown point", suggest_nearest(point, places))
     place = places[point]
     placed = assembly.bodies.get(place.body)
     own = None if placed is None else moving_inertia(mechanism, placed)

@@ -203,7 +203,7 @@ def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Ar
     if point == PLATFORM:
         return kinematics.motion
     if point not in assembly.points:
-        raise refuse(point, "no point of this name is in the description", suggest_nearest(point, (PLATFORM, *assembly.points)))
+        raise refuse(point, "unknown point", suggest_nearest(point, (PLATFORM, *assembly.points)))
     body, position = assembly.points[point]
     return twist_at(assembly, layout(assembly), body, Frame(np.eye(3), position)) @ kinematics.bodies
 

@@ -142,4 +142,4 @@ def _findings(creep: Creep) -> Iterator[Finding]:
         shapes = f"instant {creep.instant.shape}, gains {creep.gains.shape}, times {creep.times.shape}"
         yield Finding("creep", f"its parts do not fit together: {shapes}", "Give (axes,), (axes, m) and (axes, m)")
     elif not np.all(creep.times > 0.0) or not all(np.all(np.isfinite(each)) for each in (creep.instant, creep.gains, creep.times)):
-        yield Finding("creep", "a time is not above 0, or a number is not finite", "Mend the numbers")
+        yield Finding("creep", "a time is not above 0, or a number is not finite", "Correct the numbers")

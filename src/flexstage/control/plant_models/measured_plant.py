@@ -143,9 +143,7 @@ def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]
         names = [channel.name for channel in there]
         for name in wanted:
             if name not in names:
-                yield Finding(
-                    f"--record: {name}", f"no {kind} of the record is called so", f"{suggest_nearest(name, names)}; a loop needs all"
-                )
+                yield Finding(f"--record: {name}", f"unknown {kind} of the record", f"{suggest_nearest(name, names)}; a loop needs all")
                 continue
             unit = there[names.index(name)].unit
             if unit_problem(unit) is not None or not same_dimension(unit, units[name]):

@@ -252,7 +252,7 @@ def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tu
     for name in points:
         if f"{name}.x" not in outputs:
             places = {each.rpartition(".")[0] for each in outputs if each.endswith(".rz")}
-            found.append(Finding(name, "the model has no point of this name", suggest_nearest(name, places)))
+            found.append(Finding(name, "unknown point", suggest_nearest(name, places)))
     for kind, items, known in (("actuator", given.amplifiers, loop.actuators), ("gauge", given.sensors, loop.gauges)):
-        found += [Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in items if name not in known]
+        found += [Finding(name, f"unknown {kind}", suggest_nearest(name, known)) for name in items if name not in known]
     return found

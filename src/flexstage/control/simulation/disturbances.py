@@ -44,8 +44,8 @@ def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> Inf
 def _findings(named: Mapping[str, Array], known: list[str], count: int, readings: list[str]) -> Iterator[Finding]:
     for name, values in named.items():
         if name not in known:
-            yield Finding(name, "the loop has no input of this name", suggest_nearest(name, known))
+            yield Finding(name, "unknown input of the loop", suggest_nearest(name, known))
         elif values.shape != (count,):
             yield Finding(name, f"it is {values.shape}, where the reference has {count} samples", "Give as many")
         elif name not in readings and not np.all(np.isfinite(values)):
-            yield Finding(name, "a number is not finite", "Mend the series")
+            yield Finding(name, "a number is not finite", "Correct the series")

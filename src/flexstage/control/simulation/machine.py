@@ -206,14 +206,14 @@ def _findings(given: Machine) -> Iterator[Finding]:
     known += [f"applied.{name}" for name in given.actuators]
     for name in controller.input_names:
         if name not in known:
-            yield Finding(name, "a controller has no such input", suggest_nearest(name, known))
+            yield Finding(name, "unknown input of the controller", suggest_nearest(name, known))
     yield from _electric(given)
 
 
 def _missing(kind: str, known: tuple[str, ...], wanted: tuple[str, ...]) -> Iterator[Finding]:
     for name in wanted:
         if name not in known:
-            yield Finding(f"{kind}: {name}", "there is no channel of this name", suggest_nearest(name, known))
+            yield Finding(f"{kind}: {name}", "unknown channel", suggest_nearest(name, known))
 
 
 def _electric(given: Machine) -> Iterator[Finding]:

@@ -205,8 +205,8 @@ def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
     >>> on_test(resolve(parallelogram(), LoopSetup()), identify(one_mode_record()))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: --record: B: no input of the record is called so. There are u; a loop needs all.
-    --record: S: no output of the record is called so. There are y; a loop needs all.
+    flexstage.base.finding.DesignError: --record: B: unknown input of the record. Use u; a loop needs all.
+    --record: S: unknown output of the record. Use y; a loop needs all.
     """
     if given.setup.damping is not None:
         raise refuse(

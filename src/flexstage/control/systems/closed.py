@@ -210,7 +210,7 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
     return [
         *found,
         *(
-            Finding(name, "a controller has no such input", suggest_nearest(name, known))
+            Finding(name, "unknown input of the controller", suggest_nearest(name, known))
             for name in controller.input_names
             if name not in known
         ),

@@ -63,7 +63,7 @@ def _findings(table: Table) -> list[Finding]:
         what = f"time {table.times[row + 1]:g} s of row {row + 2} does not come after {table.times[row]:g} s"
         found.append(Finding(table.source, what, "Sort the rows, and give each its own time"))
     for row, column in np.argwhere(~np.isfinite(table.values))[:1]:
-        found.append(Finding(f"{table.source}: {table.coordinates[column]}", f"row {row + 1} is no number", "Mend the row"))
+        found.append(Finding(f"{table.source}: {table.coordinates[column]}", f"row {row + 1} is no number", "Correct the row"))
     return found
 
 

@@ -341,7 +341,7 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
             continue
         wanted = place if link.start is None and link.end is None else ends
         for name in [name for name, value in wanted.items() if value is None]:
-            advice = "Give both from and to, or at and along" if wanted is ends else f"Write for example {name} = {_EXAMPLES[name]}"
+            advice = "Give both from and to, or at and along" if wanted is ends else f"Use e.g. {name} = {_EXAMPLES[name]}"
             yield Finding(where, f"it has no {name}", advice)
 
 
@@ -349,13 +349,13 @@ def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     """Parts, materials, units and sensors that a description names and does not hold, and ports that links join otherwise.
 
     >>> print(*unknown_names(Mechanism("", links={"strut": Link(("ground", "platform"), "wire")})))
-    links.strut.part: there is no part "wire". There are none.
+    links.strut.part: unknown part "wire". None is defined.
     """
     parts = mechanism.parts
     for section in ("parts", "bodies", "links", "units", "placements", "gauges"):
         for where, home, name in references(getattr(mechanism, section), section):
             if name not in getattr(mechanism, home):
-                yield Finding(where, f'there is no {home.removesuffix("s")} "{name}"', suggest_nearest(name, getattr(mechanism, home)))
+                yield Finding(where, f'unknown {home.removesuffix("s")} "{name}"', suggest_nearest(name, getattr(mechanism, home)))
     for where, link in every_link(mechanism):
         yield from _port_findings(where, link, parts) if link.part in parts else ()
 
@@ -385,7 +385,7 @@ def _unknown_bodies(
     known = dict.fromkeys((*bodies, GROUND))
     ends = [(f"{link.name}.joins", body) for link in links for body in link.joins]
     ends += [(where, body) for where, item in looking.items() for body in (item.body, item.base or GROUND)]
-    yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
+    yield from (Finding(where, f'unknown body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
 
 
 def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:

@@ -136,7 +136,7 @@ def _place_findings(where: str, key: str, place: Probe | LinkProbe, gauge: Instr
         what = f"{place.gauge} is a gauge on a link, and no link is named"
         yield Finding(where, what, 'Write link = "B1/pzt", say, in the place of body and pose')
     elif gauge.gap and place.positive is None:
-        yield Finding(where, "it has no positive", 'Write for example positive = "opens"')
+        yield Finding(where, "it has no positive", 'Use e.g. positive = "opens"')
     elif not gauge.gap and place.positive is not None:
         what = f"{place.gauge} reads along or about the gauge's own x axis, and no gap {place.positive.value}"
         yield Finding(f"{where}.positive", what, "Leave it out; turn the x axis round for the other sign")
@@ -149,7 +149,7 @@ def _link_findings(where: str, key: str, place: LinkProbe, links: Collection[str
         yield Finding(where, what, "Name as many links as gauges")
     for name in named:
         if name not in links:
-            yield Finding(where, f'there is no link "{name}"', suggest_nearest(name, links))
+            yield Finding(where, f'unknown link "{name}"', suggest_nearest(name, links))
 
 
 def _count(names: tuple[str, ...], noun: str) -> str:
@@ -160,7 +160,7 @@ def _sum_findings(where: str, key: str, place: GaugeSum, gauges: Mapping[str, Ga
     if len(copy_names(key)) > 1:
         yield Finding(where, f"a sum is one gauge, and {key} names several", "Give each sum a table of its own")
     if not place.sum:
-        yield Finding(f"{where}.sum", "it has no members", "Write for example sum = { S1 = 0.5, S2 = -0.5 }")
+        yield Finding(f"{where}.sum", "it has no members", "Use e.g. sum = { S1 = 0.5, S2 = -0.5 }")
     known = [name for other in gauges for name in copy_names(other) if other != key]
     for name in place.sum:
         if name not in known:

@@ -46,7 +46,7 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
         reader.note(told)
         mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
     except EnoughError:
-        reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
+        reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     require(included.located(reader.findings))
     return mechanism
 
@@ -73,7 +73,7 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
         for address, number, node in () if value is BAD else node_of(record).numbers(value):
             reader.note(number_findings(address, number, node))
     except EnoughError:
-        reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
+        reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     require(reader.findings)
     return value
 
@@ -81,11 +81,11 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
 def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
     found = raw.get("format")
     if found is None:
-        reader.refuse("format", "the file does not say its format", f'The first line of a {_kind_of(form)} is format = "{form}"')
+        reader.refuse("format", "missing", f'Begin the file with format = "{form}"')
     elif found != form:
         other = isinstance(found, str) and re.fullmatch(r"flexstage( [a-z]+)? \d+", found) and _kind_of(found) != _kind_of(form)
-        told = f", a {_kind_of(found)}, where a {_kind_of(form)} is expected" if other else ""
-        reader.refuse("format", f"found {kind(found)}{told}", f'The first line of a {_kind_of(form)} is format = "{form}"')
+        told = f", a {_kind_of(found)}, expected a {_kind_of(form)}" if other else ""
+        reader.refuse("format", f"unknown format (got {kind(found)}{told})", f'Begin a {_kind_of(form)} with format = "{form}"')
         require(reader.findings)  # what else another kind of file holds says nothing
 
 
@@ -104,7 +104,7 @@ class _Files:
     def carried(self, reader: Reader, raw: Any) -> dict[str, tuple[Mount, Mechanism]]:
         """The stages that a table names, with what their files say."""
         if not isinstance(raw, dict):
-            reader.refuse(STAGES, f"found {kind(raw)} where a table is expected", 'Write for example fine = { file = "fine.toml" }')
+            reader.refuse(STAGES, f"must be a table (got {kind(raw)})", 'Use e.g. fine = { file = "fine.toml" }')
             return {}
         mounts = {name: reader.read(node_of(Mount), item, f"{STAGES}.{name}") for name, item in raw.items() if name != TAGS}
         found = {name: (item, self.read(reader, name, item)) for name, item in mounts.items() if isinstance(item, Mount)}

@@ -52,12 +52,12 @@ def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ())
     `above` are the files that are being read. An entry stands in one file: a second one of its name is a finding.
 
     >>> with_included({"name": "a", "include": "stock.toml"}, "stage.toml")[1][0].what
-    'found "stock.toml" where a list of files is expected'
+    'must be a list of files (got "stock.toml")'
     """
     names = raw.get(INCLUDE, [])
     tree = {key: dict(value) if key in SECTIONS and isinstance(value, dict) else value for key, value in raw.items() if key != INCLUDE}
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        return Included(tree), [Finding(INCLUDE, f"found {kind(names)} where a list of files is expected", _LIST)]
+        return Included(tree), [Finding(INCLUDE, f"must be a list of files (got {kind(names)})", _LIST)]
     origin: dict[str, tuple[str, str]] = {}
     findings: list[Finding] = []
     for name in names:
@@ -114,7 +114,7 @@ def _strange(raw: dict[str, Any]) -> Iterator[Finding]:
             place = f"{key}.{next(iter(value))}" if isinstance(value, dict) and value else key
             yield Finding(place, f"an included file holds what is drawn once: {', '.join(SECTIONS)}", "Write the rest in the design")
         elif key in SECTIONS and not isinstance(value, dict):
-            yield Finding(key, f"found {kind(value)} where a table is expected", "Write a table: [name]")
+            yield Finding(key, f"must be a table (got {kind(value)})", "Write a table: [name]")
 
 
 def _with_whole_paths(value: Any, folder: Path) -> Any:

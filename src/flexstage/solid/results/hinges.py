@@ -137,7 +137,7 @@ STANDARD_HINGES = hinges()
 def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
     """Every distinct hinge of a stage.
 
-    It is called as its part is; where that has different roots at different links, `part-link`; a copy that departs, by its link's name.
+    Use as its part is; where that has different roots at different links, `part-link`; a copy that departs, by its link's name.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = distinct_hinges(double_triangle())

@@ -43,7 +43,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
     """
     return loads_tolerance(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
@@ -66,9 +66,7 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     bench = _Reached(design)
     scatters = _scatters(file.scatter, bench, findings)
     if not file.scatter:
-        findings.append(
-            Finding("scatter", "nothing scatters", 'Write for example wire = { address = "hinges.thickness", normal = "5 um" }')
-        )
+        findings.append(Finding("scatter", "nothing scatters", 'Use e.g. wire = { address = "hinges.thickness", normal = "5 um" }'))
     if file.tolerance.copies > _MOST:
         findings.append(Finding("tolerance.copies", f"these are {file.tolerance.copies:.3g} copies", f"Ask for at most {_MOST:.0e}"))
     asked = _command(file.tolerance, design, findings)
@@ -201,7 +199,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         try:
             sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
             if not sizes[key] > 0.0:
-                findings.append(Finding(f"{where}.{key}", f"found {show(sizes[key], wanted)}", "Give a deviation above 0"))
+                findings.append(Finding(f"{where}.{key}", f"must be greater than 0 (got {show(sizes[key], wanted)})", "Use a positive deviation"))
         except DesignError as error:
             findings += error.findings
     require(findings)

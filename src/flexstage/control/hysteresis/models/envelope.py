@@ -65,7 +65,7 @@ def _findings(envelope: Envelope) -> Iterator[Finding]:
     if knots.shape != values.shape or knots.ndim != 2 or knots.shape[1] < 2:
         yield Finding("envelope", f"its knots are {knots.shape} and its values {values.shape}", "Give as many of both, at least two")
     elif not np.all(np.isfinite(knots)) or not np.all(np.isfinite(values)):
-        yield Finding("envelope", "a knot or a value is not finite", "Mend the numbers")
+        yield Finding("envelope", "a knot or a value is not finite", "Correct the numbers")
     else:
         for axis, knot in np.argwhere(np.diff(knots) <= 0.0):
             what = f"knot {knot + 1} of axis {axis} at {knots[axis, knot + 1]:g} follows {knots[axis, knot]:g}"

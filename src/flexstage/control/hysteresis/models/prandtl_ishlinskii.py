@@ -69,7 +69,7 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
         yield Finding("hysteresis", f"thresholds are {thresholds.shape}, weights {weights.shape}", "Give as many of both, at least one")
         return
     if not np.all(np.isfinite(thresholds)) or not np.all(np.isfinite(weights)):
-        yield Finding("hysteresis", "a threshold or a weight is not finite", "Mend the numbers")
+        yield Finding("hysteresis", "a threshold or a weight is not finite", "Correct the numbers")
     for axis in np.flatnonzero(thresholds[:, 0] != 0.0):
         what = f"the first threshold of axis {axis} is {thresholds[axis, 0]:g}"
         yield Finding("thresholds", what, "Let it be 0: the part without memory, of whatever weight")

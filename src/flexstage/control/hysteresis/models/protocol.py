@@ -49,7 +49,7 @@ class Hysteresis(Protocol):
         if values.shape[1:] != (self.axes,) and not (values.ndim == 1 and self.axes == 1):
             raise refuse("hysteresis", f"inputs are {values.shape} for {self.axes} axes", f"Give (samples, {self.axes})")
         if not np.all(np.isfinite(values)):
-            raise refuse("hysteresis", "an input is not finite", "Mend the inputs")
+            raise refuse("hysteresis", "an input is not finite", "Correct the inputs")
         rows = values.reshape(len(values), self.axes)
         found = np.empty_like(rows)
         for place, value in enumerate(rows):

@@ -100,9 +100,9 @@ class ChargeSetup(AmplifierSetup):
         """No coupling, no corner, or two of them, besides what voltage amplifiers may have wrong."""
         yield from super().faults
         if self.coupling is None:
-            advice = "Write for example coupling = 0.7: by strokes and capacitances of data sheets, d^2 k / C, it comes out too high"
+            advice = "Use e.g. coupling = 0.7: by strokes and capacitances of data sheets, d^2 k / C, it comes out too high"
             yield Finding("amplifier.coupling", "charge is held, and how far the stack couples it to its length is not stated", advice)
         if (self.corner is None) == (self.leakage is None):
             given = "are both given" if self.corner is not None else "are both missing"
-            advice = 'Give one of them: no drive holds charge for ever. Write for example corner = "0.1 Hz"'
+            advice = 'Give one of them: no drive holds charge for ever. Use e.g. corner = "0.1 Hz"'
             yield Finding("amplifier", f"its corner and its leakage {given}", advice)

@@ -97,12 +97,12 @@ class TableSamples:
     def _line(self, text: str, number: int) -> list[float]:
         """One line, field by field; raises `DesignError` that names it where it cannot be read."""
         fields, expected = self.layout.fields(text), len(self.layout.names)
-        where = f"{self.path}: line {self.layout.line + number}"
+        where = f"{self.path}:{self.layout.line + number}"
         fields = fields[:-1] if len(fields) == expected + 1 and not fields[-1] else fields
         if len(fields) != expected:
             what = f'it has {len(fields)} of {expected} fields: "{text.strip()[:_LISTED]}"'
-            raise refuse(where, what, "Mend the line, or take it away")
-        return [self._field(fields[column], f"{where}, {self.layout.names[column]}") for column in self.columns]
+            raise refuse(where, what, "Correct the line, or take it away")
+        return [self._field(fields[column], f"{where}: {self.layout.names[column]}") for column in self.columns]
 
     def _field(self, text: str, where: str) -> float:
         plain = text.replace(",", ".") if self.layout.decimal == "," else text
