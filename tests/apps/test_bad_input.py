@@ -11,7 +11,7 @@ from tests.apps.command import Command, Ended
 
 Broken = tuple[Callable[[str], str], tuple[str, ...]]
 
-NECK = 'thickness = "2 mm"'
+NECK = 'thickness = "1.54 mm"'
 FRONT = 'front = { joins = ["tip", "platform"]'
 PIVOTED = """format = "flexstage 1"
 name = "pivoted"

@@ -74,7 +74,7 @@ def test_a_front_is_shown(study_file, tmp_path, flexstage):
         ("starts = 2", "starts = 0", "a whole number of 1 or more"),
         ("starts = 2", "start = 2", "Use starts"),
         ('"0.6 mm"', '"1.2 mm"', "outside 0.0012 to 0.002 m"),
-        ('"50 um"', '"-50 um"', "Give a step above 0"),
+        ('"50 um"', '"-50 um"', "must be greater than 0"),
         ('"50 um"', "50", "50"),
         (
             "[optimise]",

@@ -69,7 +69,7 @@ def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexsta
     [
         ("hinges", "hinge", "Use hinges"),
         ("units.rotation.z", "units.rotaton.z", "Use rotation"),
-        ("300 urad", "-1 urad", "Give a deviation above 0"),
+        ("300 urad", "-1 urad", "must be greater than 0"),
         ("copies = 40", "copies = 1", "Give a whole number of 2 or more"),
         ("seed = 2", 'sampling = "grid"', 'unknown value (got "grid")'),
         ("seed = 2", 'point = "edge"', 'unknown point "edge"'),

@@ -344,8 +344,8 @@ def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
 BAD = {
     'w = { address = "hinge.thickness", normal = "1 um" }': 'unknown name "hinge". Use hinges.',
     'w = { address = "leaf.thicknes", normal = "1 um" }': "Use thickness",
-    'w = { address = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
-    'w = { address = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
+    'w = { address = "leaf.thickness", normal = "-1 um" }': "must be greater than 0",
+    'w = { address = "leaf.thickness", normal = "0 um" }': "must be greater than 0",
     'w = { address = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard",
     'w = { address = "leaf.thickness", normal = "1e308 m" }': "deviations reach inf mm (5 standard deviations)",
     'w = { address = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and is to be greater than 0",
