@@ -1,4 +1,4 @@
-"""Reports of stages away from their drawn position: a stroke, and what gives way under a load; HTML files that stand alone."""
+"""Reports of large displacements: a stroke, buckling, misalignment; self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
-    """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
+    """A path as an HTML page: an animated stage with curves and a cursor; static in print."""
     data, words_beyond = stroke_data(mechanism, path, found), limits(found)
     beyond = [each for each in words_beyond if each]
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
@@ -46,7 +46,7 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
 
 
 def stroke_tables(found: Stroke) -> list[Table]:
-    """What the stage does at every point of its stroke, and where it sags to before."""
+    """Results at every point of a stroke, and the static deflection before it."""
     start = "where the stage sags to" if found.sag is not None else "the drawn place"
     free = "Of f1 to f3 and of the ways in which it would leave (unstable), the stage is free under the force that holds it."
     table = along_table(f"Along {found.drive}", found.along, [f"Counted from {start}. {free} Stress: von Mises, the largest of a flexure."])
@@ -55,7 +55,7 @@ def stroke_tables(found: Stroke) -> list[Table]:
 
 
 def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
-    """What is told of every point of a path: a row a point, a column a quantity in its own display unit."""
+    """Results at every point of a path: one row for each point, one column for each quantity in its own display unit."""
     kept = quiet(along.values)
     told = list(quantities_of(replace(along, values=kept)))
     heads = [Column(name, "" if form.unit == "1" else form.unit) for name, _, form in told]
@@ -65,9 +65,9 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
 
 
 def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | None = None) -> str:
-    """What gives way in every load case, as a page of HTML in which it moves so, about its last stable state; the least first.
+    """Buckling in every load case as an HTML page: the buckling mode at the last stable state, the lowest factor first.
 
-    `after` is the path from where the least gives way.
+    `after` is the post-buckling path of the lowest factor.
     """
     least = found.least
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
@@ -94,7 +94,7 @@ def _buckling_text(found: CaseFactors) -> str:
 
 
 def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table | None]:
-    """Load cases and stroke ends with their factors; how the least gives way, and equilibria `after` that."""
+    """Load cases and stroke ends with their factors; the buckling mode of the lowest, and equilibria `after` it."""
     table = result_table(found.cases)
     least = found.least
     if least is None:
@@ -106,7 +106,7 @@ def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Tab
 
 
 def shape_of(case: CaseFactor) -> Matrix:
-    """How bodies move as a stage gives way, the largest number 1; without rows where nothing does."""
+    """The buckling mode, scaled to a largest number of 1; without rows if there is none."""
     if case.found is None:
         return Matrix(np.zeros((0, 6)), (), COMPONENTS, ())
     shape = case.found.shape / (np.max(np.abs(case.found.shape), initial=0.0) or 1.0)
@@ -124,7 +124,7 @@ _BENT = "Flexures lie as it bends them. Red is beyond a limit."
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
-    """What a misaligned copy does, as a page of HTML: the stage as it is bent, loads, frequencies and stress over the misalignment."""
+    """The effect of a misaligned instance as an HTML page: the deformed stage, loads, frequencies and stress over the misalignment."""
     sections = [
         _misaligned_curves(found),
         caveat_section(mechanism, found.warnings),
@@ -149,7 +149,7 @@ def _misaligned_text(found: Misaligned) -> str:
 
 
 def misaligned_tables(found: Misaligned) -> list[Table]:
-    """Where the stage gives way, what it does on the way to the last misalignment, and the loads in all flexures there."""
+    """Critical misalignment, results up to the last misalignment, and the loads in all flexures there."""
     last = format_value(float(found.along.values[-1, 0]), MOTION.unit(found.axis), 4)
     return [
         make_table("Misaligned", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
@@ -159,7 +159,7 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
 
 
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
-    """What each copy bears, as a page of HTML; the worst of them is played."""
+    """Misalignment of each instance as an HTML page; the animation shows the most critical."""
     worst = found.worst
     sections = [
         section("Copy by copy", misalignment_tables(found)),
@@ -175,7 +175,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
 
 
 def misalignments_text(found: Misalignments) -> str:
-    """How many copies there are, and which gives way first."""
+    """The number of instances, and the first that buckles."""
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
         return "no copy and no link joins the ground"
@@ -187,13 +187,13 @@ def misalignments_text(found: Misalignments) -> str:
 
 
 def critical_text(found: Misaligned) -> str:
-    """At which misalignment the stage gives way, in words."""
+    """The critical misalignment as a text."""
     size = format_value(found.followed, MOTION.unit(found.axis), 4)
     return f"it is stable up to {size}, and not followed beyond" if np.isnan(found.critical) else f"it gives way at {size}"
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
-    """What each copy bears along or about its axes: where it gives way, what forces it to a size, and the stress then."""
+    """Results of each instance along or about its axes: critical misalignment, load and stress at one amount."""
     size = format_value(found.size, MOTION.unit(found.critical.columns[0]), 4)
     alone = "Of one copy alone, in its own frame"
     return [
@@ -216,7 +216,7 @@ def _page(
     sections: Iterable[Section | None],
     said: str = "",
 ) -> str:
-    """A page that begins with the stage as it moves, `said` below it, and ends with its drawings."""
+    """A page that begins with the animated stage, `said` below it, and ends with its drawings."""
     origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", __version__))
     head = Head(mechanism.name or "stage", kind, origin, headline)
     return page(head, [stage_section(data, said=said), *sections, drawing_section(mechanism, data)], {"stage": data})

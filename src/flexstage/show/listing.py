@@ -1,4 +1,4 @@
-"""Listings: the shipped cases, the catalogue and findings as tables."""
+"""Listings: the shipped cases, the catalogue and errors as tables."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def case_table() -> Table | None:
 
 
 def parameter_table(name: str) -> Table | None:
-    """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name where there is no such case.
+    """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name for an unknown case.
 
     >>> parameter_table("parallelogram").texts()[-2]
     ['spacing', 'length', '50 mm']
@@ -42,7 +42,7 @@ def parameter_table(name: str) -> Table | None:
 
 
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
-    """Materials, stacks and gauges: every number as it would stand in a design file, with its source.
+    """Materials, stacks and gauges: every number as written in a design file, with its source.
 
     >>> from flexstage.mechanism.catalogue import catalogue_from
     >>> catalogue_tables(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]
@@ -64,7 +64,7 @@ def find_section(catalogue: Catalogue, name: str) -> Catalogue:
 
 
 def catalogue_body(catalogue: Catalogue) -> dict[str, Any]:
-    """The catalogue as plain values: section, entry, and its values as they would stand in a design file; and the sources.
+    """The catalogue as plain values: section, entry, and its values as written in a design file; and the sources.
 
     >>> from flexstage.mechanism.catalogue import catalogue_from
     >>> catalogue_body(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]

@@ -19,7 +19,7 @@ from flexstage.show.command.models import Models
 
 
 class Command(NamedTuple):
-    """A command: its `name`, the `group` it stands in, one line of `help`, its function or `Typer` as module:name, and an `example`.
+    """A command: its `name`, its `group`, one line of `help`, its function or `Typer` as module:name, and an `example`.
 
     The line of help is the first line of the function's docstring, which is read when the command is called.
     """
@@ -133,11 +133,11 @@ COMMANDS: tuple[Command, ...] = (
 _SPELLINGS = {"analyze": "analyse", "optimize": "optimise"}
 
 MODELS = Models({"solid": f"{_SOLID}.modes:fea_modes"})
-"""Models that commands of other wings may ask for."""
+"""Models for commands of other packages."""
 
 
 class LazyCommand(TyperCommand):
-    """Stands for a command in the help and in completion until it is called."""
+    """Placeholder of a command in the help and in completion until it is called."""
 
     def __init__(self, command: Command) -> None:
         super().__init__(command.name, help=command.help, rich_markup_mode=None)
@@ -153,7 +153,7 @@ class LazyCommand(TyperCommand):
 
 
 class GroupedCommands(TyperGroup):
-    """A group that lists its commands by purpose, and loads the one that is called."""
+    """A group that lists its commands by purpose, and loads the called one."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of this name, in British or American spelling."""
@@ -174,8 +174,8 @@ class GroupedCommands(TyperGroup):
         )
         return name, command, rest
 
-    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 (the framework gives it)
-        """Write a section a purpose; all columns are alike."""
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 (required by the framework)
+        """Write one section for each purpose, with equal columns."""
         width = max(map(len, self.commands))
         for group, commands in groupby(cast("Iterable[LazyCommand]", self.commands.values()), lambda each: each.command.group):
             with formatter.section(group):
@@ -183,7 +183,7 @@ class GroupedCommands(TyperGroup):
 
 
 def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
-    """The command line: a group of commands, none of which is imported before it is called."""
+    """The command line: a group of commands, imported at their first call."""
     app = typer.Typer(
         cls=GroupedCommands,
         help="Design and proof of flexure-based ultra-precision positioning stages.",

@@ -33,7 +33,7 @@ from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table
 
 _WARNINGS, _WIDTH = 3, 80
-"""Lines of warnings that the short form shows, of a terminal of that width."""
+"""Lines of warnings in the short form, and width of the terminal."""
 
 
 def analyse(  # noqa: PLR0913 (its options)
@@ -125,7 +125,7 @@ def _short_caveats(analysis: Analysis) -> Iterator[str]:
 
 
 def _first_lines(texts: list[str]) -> list[str]:
-    """The first of some texts, at least one, as long as they leave room for the rest on a screen of 80 columns."""
+    """The first of some texts, at least one, as many as leave room for the other results on a screen of 80 columns."""
     used = accumulate(math.ceil(len(each) / _WIDTH) for each in texts)
     return [each for place, (each, lines) in enumerate(zip(texts, used, strict=True)) if place == 0 or lines <= _WARNINGS]
 
@@ -148,7 +148,7 @@ def _change_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[
 
 
 def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
-    """What decides first, one or two an analysis; the commands of one analysis show more."""
+    """Main tables, one or two for each analysis; the commands of one analysis print more."""
     found = analysis.kinematics
     yield kinematics.mobility_table(found)
     yield kinematics.mapping_table(found) if found.actuated else None

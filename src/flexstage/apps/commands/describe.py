@@ -38,7 +38,7 @@ from flexstage.studies.form import study_schema
 
 DEFAULT_CASE = "double-triangle"
 SCHEMA_FILE = "flexstage.schema.json"
-"""Where the first line of a new design file tells editors to look for the schema: beside it, as `flexstage schema > FILE` writes it."""
+"""File of the schema in the first line of a new design file, for editors: in the same folder, from `flexstage schema > FILE`."""
 
 
 def new(

@@ -1,4 +1,4 @@
-"""Commands of stages away from their drawn position: `stroke`, `buckle`."""
+"""Commands of stages away from their undeformed configuration: `stroke`, `buckle`, `misalign`."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def stroke(
 
 
 def _first_path(mechanism: Mechanism) -> str:
-    """The first path of a design, "" without one; others are told of."""
+    """The first path of a design, "" without one; prints a note about the others."""
     first, *others = mechanism.paths or ("",)
     if others:
         announce(f"Path {first}; of the others: {', '.join(f'--path {each}' for each in others)}")
@@ -92,7 +92,7 @@ def _first_path(mechanism: Mechanism) -> str:
 
 
 def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str, float]) -> Course:
-    """A path of a design, under `loads` too."""
+    """A path of a design, with additional `loads`."""
     if name not in mechanism.paths:
         raise refuse(f"--path {name}", "unknown path", suggest_nearest(name, mechanism.paths))
     found = course(mechanism, name)
@@ -110,7 +110,7 @@ def _asked(model: Nonlinear, drive: str, *, start: str, end: str, steps: int, lo
 
 
 def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
-    """Where a drive ends that is not told: a stack at its full stroke, a coordinate near rest."""
+    """Default end of a drive: the full stroke of a stack, a small displacement of a coordinate."""
     own = model.assembly.actuator(drive) if drive in model.assembly.strokes else None
     if isinstance(own, StrokeActuator):
         return float(np.real(own.stroke))
@@ -121,9 +121,9 @@ def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """The `factor` on a `load` at which the stage gives way: how (`kind`), which flexure by itself (`link`), and its `shape` by body.
+    """The buckling `factor` on a `load`: its `kind`, a single buckling flexure (`link`), and its `shape` by body.
 
-    `cases` are all load cases and stroke ends that were asked for, the first of them this one.
+    `cases` are all requested load cases and stroke ends, the first of them this one.
     """
 
     load: str
@@ -133,7 +133,7 @@ class Buckling:
     shape: Matrix
     cases: tuple[CaseFactor, ...]
     beyond: Matrix | None = None
-    """Equilibria from there on, a row a point, along the factor."""
+    """Equilibria of the post-buckling path, one row for each point, along the factor."""
 
 
 @command("report")
@@ -177,7 +177,7 @@ def buckle(
 
 
 def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, points: int) -> Beyond:
-    """From where the least case gives way on; refused where that needs something held."""
+    """The post-buckling path of the lowest critical case; refused if it requires prescribed coordinates."""
     least = found.least
     if least is None or least.found is None:
         raise refuse("--post-buckling", "the stage does not buckle", "Leave it out, or name a larger load")
@@ -190,7 +190,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
 
 
 def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase:
-    """What the options name: the load that grows, else the weight, and the operating point."""
+    """The load case of the options: the scaled load, else the weight, and the operating point."""
     model = nonlinear(mechanism)
     grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, asked.load or ()), asked.brought(model)
     require_consistent(model, there, {**grows, **stays}, asked.locked)
@@ -202,7 +202,7 @@ def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase
 
 
 def _unanswered(found: CaseFactors) -> Iterator[Finding]:
-    """Why there is no answer at all: nothing loads the stage, or the one case that was asked for has no factor."""
+    """Reasons for a missing result: the stage has no load, or the only requested case has no factor."""
     if not found.cases:
         what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
         yield Finding("stage", what, 'Name a load: --scale-load "platform.fz=-20 N"')

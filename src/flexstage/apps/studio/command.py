@@ -1,4 +1,4 @@
-"""The command `studio`: a stage in a window of the browser, changed by hand and computed as one goes."""
+"""The command `studio`: a stage in a window of the browser, edited and computed interactively."""
 
 from __future__ import annotations
 

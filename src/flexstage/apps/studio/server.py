@@ -1,4 +1,4 @@
-"""The studio's server: pages and their socket on the loopback, for whoever has the token."""
+"""The studio's server: pages and their socket on the loopback, for clients with the token."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from flexstage.base.version import __version__
 
 HOST = "127.0.0.1"
 LARGEST = 8_000_000
-"""Bytes of the largest message of a page: a text of the largest design, with what JSON adds."""
+"""Bytes of the largest message of a page: a text of the largest design, with JSON overhead."""
 _PATIENCE = 10.0
-"""How long a page may take to say its token [s]."""
+"""Time limit for a page to send its token [s]."""
 _PAGES = 16
 _KEPT = (say.Welcome, say.Engine, say.State, say.Scene, say.Figures, say.Verdicts, say.Reach, say.Warnings, say.Jobs)
-"""Of what is pushed the newest alone is worth sending."""
+"""Pushed messages of which only the newest is sent."""
 _STUDIO, _SHOW = Path(__file__).with_name("static"), Path(show.__file__).with_name("static")
 _SCRIPT, _PLAIN = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
 _FILES: Mapping[str, tuple[Path, str]] = {
@@ -51,11 +51,11 @@ _REPORT_POLICY = (
     "sandbox allow-scripts allow-downloads allow-modals; default-src 'none'; script-src 'unsafe-inline'; "
     "style-src 'unsafe-inline'; img-src data: blob:; font-src data:"
 )
-"""Reports bring their own scripts, and reach neither the studio nor anything outside."""
+"""Reports contain their own scripts, and can access neither the studio nor the network."""
 
 
 class Studio:
-    """A server of one design. `url` is what a person opens; the token stands behind #, which browsers send to nobody."""
+    """A server of one design. `url` is the address to open; the token follows #, which browsers do not send."""
 
     def __init__(self, path: Path, port: int = 0) -> None:
         self.session = Session(Stored.read(path.resolve()), self._tell_all)
@@ -69,7 +69,7 @@ class Studio:
 
     @property
     def port(self) -> int:
-        """The port that it listens at."""
+        """The listening port."""
         return self._port
 
     @property
@@ -78,9 +78,9 @@ class Studio:
         return f"http://{HOST}:{self._port}/#{self.token}"
 
     async def start(self) -> None:
-        """Listen, and begin to compute. Raises `DesignError` where the port is taken."""
+        """Listen, and begin to compute. Raises `DesignError` if the port is in use."""
         try:
-            with contextlib.suppress(OSError):  # pages of a studio that was killed look for it there
+            with contextlib.suppress(OSError):  # pages of a killed studio use this port
                 self._server = await self._listen(self._last_port) if self._last_port and not self._port else None
             self._server = self._server or await self._listen(self._port)
         except OSError as error:
@@ -113,7 +113,7 @@ class Studio:
                 await asyncio.wait_for(self._server.wait_closed(), _PATIENCE)
         await self.session.close()
 
-    # --- what is asked by GET ---
+    # --- GET requests ---
 
     def _request(self, _: ServerConnection, request: Request) -> Response | None:
         """The answer to a GET: a file of the table, a report, the socket (none), or a refusal."""
@@ -146,7 +146,7 @@ class Studio:
     # --- the socket ---
 
     async def _page(self, connection: ServerConnection) -> None:
-        """One window, from its token to its end."""
+        """Serve one window, from its token to its end."""
         if not await self._is_let_in(connection):
             return
         self._count += 1
@@ -183,7 +183,7 @@ class Studio:
         return False
 
     def _hear(self, text: str | bytes, page: int, outbox: Outbox) -> None:
-        """Begin to do what a page asks."""
+        """Start the handling of a page's request."""
         try:
             request = decode(text)
         except DesignError as error:
@@ -204,16 +204,16 @@ class Studio:
 
 
 class Outbox:
-    """What a page is still to be told: answers in order, of what is pushed the newest of each kind. A slow page holds up nobody."""
+    """Messages to a page: answers in order, of pushed ones the newest of each kind. A slow page delays no other."""
 
     def __init__(self) -> None:
         self._waiting: deque[say.Said] = deque()
         self._filled = asyncio.Event()
         self.sent = 0
-        """Bytes that went out."""
+        """Number of sent bytes."""
 
     def put(self, message: say.Said) -> None:
-        """Tell it when its turn comes."""
+        """Queue a message."""
         if isinstance(message, _KEPT):
             kept = [each for each in self._waiting if type(each) is not type(message)]
             if len(kept) < len(self._waiting):
@@ -222,7 +222,7 @@ class Outbox:
         self._filled.set()
 
     async def send(self, connection: ServerConnection) -> None:
-        """Send what waits, until the page goes."""
+        """Send queued messages, until the page closes."""
         with contextlib.suppress(ConnectionClosed):
             while True:
                 await self._filled.wait()
@@ -254,7 +254,7 @@ def _answer(
 
 
 async def run(path: Path, port: int, started: Any) -> None:
-    """Serve a design until it is interrupted; `started` is told the address."""
+    """Serve a design until an interruption; `started` is called with the address."""
     studio = Studio(path, port)
     await studio.start()
     try:

@@ -1,4 +1,4 @@
-"""Exit codes, and what is said of failures: bad input finding by finding, a fault of flexstage without a traceback."""
+"""Exit codes and messages of failures: an error of the input in one line, a fault of flexstage without a traceback."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.show.command.terminal import print_note, print_warning, streams
 
 DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
 SIGNALLED = 128
-"""To this the number of a signal is added that ended the command."""
+"""Exit code of a command ended by a signal: this plus the number of the signal."""
 ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 _FRAMEWORKS_INTERRUPTED = 130
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
@@ -28,14 +28,14 @@ _KEPT = "Kept are only finished finite elements, in the cache, and designs of a 
 
 
 def run_guarded(action: Callable[[], object]) -> int:
-    """Run an action and turn however it ends into an exit code; messages go to stderr."""
+    """Run an action and return its exit code; messages go to stderr."""
     with streams():
         return _exit_code(action)
 
 
 def _exit_code(action: Callable[[], object]) -> int:
     remove_temporary_leftovers()
-    for name in _THREADS:  # many small matrices: a second thread costs more than it gives. Read when numpy is loaded.
+    for name in _THREADS:  # many small matrices: a second thread is slower. Read when numpy is loaded.
         os.environ.setdefault(name, "1")
     try:
         with _print_warnings(), pending_outputs():
@@ -59,9 +59,9 @@ def _exit_code(action: Callable[[], object]) -> int:
 
 def _code_of_exit(end: SystemExit) -> int:
     """The exit code of a command that left early."""
-    if end.code == _FRAMEWORKS_INTERRUPTED:  # the command line's framework turns the interruption into this
+    if end.code == _FRAMEWORKS_INTERRUPTED:  # of the command-line framework, for an interruption
         return _interrupted()
-    if isinstance(end.__context__, BrokenPipeError):  # and a reader that has gone into a code of failure
+    if isinstance(end.__context__, BrokenPipeError):  # and a failure for a closed pipe
         return DONE
     if end.code in {SIGNALLED + each for each in ENDINGS}:
         print_note(f"Ended by a signal. {_KEPT}")
@@ -69,7 +69,7 @@ def _code_of_exit(end: SystemExit) -> int:
 
 
 def _run_and_flush(action: Callable[[], object]) -> None:
-    """The action, until its reader has all of it, however it ends."""
+    """Run the action and flush its output, also after a failure."""
     try:
         action()
     except SystemExit:

@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share, and the forms of those of one command: a text, or one of a few words."""
+"""Arguments and options of several commands; options that are texts or choices."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
-    """An option that is a text; its default is stated in words, if at all."""
+    """A text option; its help states a default, if any."""
     return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
 def output_option(metavar: str, about: str) -> Any:
-    """The option of the file that a command writes."""
+    """The option for the output file of a command."""
     return typer.Option("--output", "-o", metavar=metavar, help=about, show_default=False)
 
 
 def word_option(name: str, kind: type[Enum], about: str, *, otherwise: Mapping[str, str] = _NOTHING, show_default: bool = True) -> Any:
-    """An option that is one of a few words; `otherwise` says what to do instead for words that one might expect."""
+    """A choice of a few words; `otherwise` maps likely wrong words to hints."""
     words = [str(each.value) for each in kind]
     return typer.Option(
         name,
@@ -45,11 +45,11 @@ def word_option(name: str, kind: type[Enum], about: str, *, otherwise: Mapping[s
 
 
 def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Callable[[str | _Kind], _Kind]:
-    """A reader of an option's word, which refuses others in one line."""
+    """A reader of the choices of an option; refuses others in one line."""
 
     def read(word: str | _Kind) -> _Kind:
         for each in kind:
-            if word in (each, each.value):  # each: the default
+            if word in (each, each.value):  # the member: a default
                 return each
         advice = f" {otherwise[str(word)]}." if word in otherwise else ""
         print_note(f"error: {option}: must be {list_choices([str(each.value) for each in kind])} (got {word}).{advice}")

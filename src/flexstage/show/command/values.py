@@ -1,4 +1,4 @@
-"""Values in the texts of options: quantities with units, motions of the platform, random inputs."""
+"""Values in the texts of options: quantities with units, platform motions, random inputs."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _ASD_EXAMPLE = 'Use e.g. --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration,
 
 
 class Values:
-    """Reads texts and gathers what is wrong with them, so that all of it is told together."""
+    """Reads texts and collects their errors, so that all are reported together."""
 
     def __init__(self) -> None:
         self.findings: list[Finding] = []
 
     def attempt(self, action: Callable[[], _Value]) -> _Value | None:
-        """What an action gives; nothing, and its findings noted, where it fails."""
+        """The result of an action; `None` with its errors collected if it fails."""
         try:
             return action()
         except DesignError as error:
@@ -34,7 +34,7 @@ class Values:
             return None
 
     def value(self, option: str, text: str | None, quantity: Quantity) -> float | None:
-        """The value of a text in SI units; nothing where it is absent or wrong."""
+        """The value of a text in SI units; `None` if it is absent or wrong."""
         return None if text is None else self.attempt(lambda: parse(text, quantity, where=option))
 
 
@@ -44,7 +44,7 @@ def names(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name, float] | None:
-    """The name of the first quantity that a text is of, and its value in SI units; nothing where it is of none."""
+    """The name of the first quantity whose unit a text has, and its value in SI units; `None` if no quantity fits."""
     for name, quantity in known.items():
         try:
             return name, parse(text, quantity)
@@ -54,7 +54,7 @@ def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name
 
 
 def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
-    """What `--amplifier` says, each by its unit."""
+    """Values of `--amplifier`, assigned by their units."""
     known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
     found: dict[str, float] = {}
     for text in texts:
@@ -67,7 +67,7 @@ def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
 
 
 def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str], _Value]) -> dict[str, _Value]:
-    """Read texts NAME=VALUE of an option by `read(name, value, where)`; refuse all that are wrong at once.
+    """Read texts NAME=VALUE of an option by `read(name, value, where)`; report all errors together.
 
     >>> read_pairs(["x=5 um"], "--at", lambda name, value, where: parse(value, DISPLACEMENT, where=where))
     {'x': 5e-06}
@@ -84,7 +84,7 @@ def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str]
 
 
 def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
-    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of an option; all mistakes are reported together."""
+    """Amounts [m, rad] by platform motion from texts AXIS=VALUE of an option; all errors are reported together."""
 
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
@@ -96,9 +96,9 @@ def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]
 
 
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
-    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second rate.
+    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second derivative.
 
-    All mistakes are told together.
+    All errors are reported together.
     """
     return read_pairs(densities, "--input-asd", partial(_spectrum, model))
 

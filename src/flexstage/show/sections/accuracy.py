@@ -29,7 +29,7 @@ def drift_section(analysis: Analysis) -> Section | None:
 
 
 def error_section(analysis: Analysis) -> Section | None:
-    """Every source of pose error on one line an axis; `None` without it.
+    """Every source of pose error, one line for each axis; `None` without it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

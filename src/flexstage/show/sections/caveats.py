@@ -1,4 +1,4 @@
-"""The section of a report about caveats."""
+"""The section of a report about warnings and default values."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexstage.show.tables.caveats import warning_table
 
 
 def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Section | None:
-    """Warnings about the description and `more` about the result, and what was taken by default; `None` where there is neither.
+    """Warnings about the description and `more` about the result, and default values; `None` without either.
 
     >>> caveat_section(Mechanism("stage")) is None
     True

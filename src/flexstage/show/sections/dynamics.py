@@ -60,7 +60,7 @@ def _shapes(modes: Modes, data: StageData) -> Iterator[Picture]:
 
 
 def _shares(modes: Modes, index: int) -> str:
-    """Whose the kinetic energy of a mode is: the platform, units and other bodies from a hundredth on."""
+    """Kinetic-energy fractions of a mode: the platform, units and other bodies above one per cent."""
     shares: dict[str, float] = {}
     for name, energy in zip(modes.bodies, first_design(modes.energies, 2)[:, index], strict=True):
         owner = name.partition("/")[0]
@@ -71,7 +71,7 @@ def _shares(modes: Modes, index: int) -> str:
 
 
 def response_section(analysis: Analysis) -> Section | None:
-    """Frequency responses to the strokes and to the ground; `None` where neither is known.
+    """Frequency responses to the strokes and to the ground; `None` without either.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -107,7 +107,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
 
 
 def lost_motion_section(analysis: Analysis) -> Section | None:
-    """Gains, losses, their budget by part and the corrected mapping; `None` where there are none.
+    """Transmission ratios, losses, their budget by part and the corrected mapping; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -13,7 +13,7 @@ from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_ta
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
-    """What the platform reaches and what that asks of actuators and gauges; `None` where strokes do not determine the platform.
+    """Workspace of the platform, and use of actuators and gauges; `None` if the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -40,7 +40,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
 
 
 def strength_section(analysis: Analysis) -> Section | None:
-    """Forces, stress, buckling, loads and clearance; `None` where none is known.
+    """Forces, stress, buckling, loads and clearance; `None` if none is known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -1,4 +1,4 @@
-"""Table of the deflection under dead load."""
+"""Table of the deflection under permanent load."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _NOISE = 1e-9
 
 
 def deflection_table(deflection: Deflection) -> Table:
-    """Deflection of a point by cause: own weight, each payload, each stated force.
+    """Deflection of a point by cause: own weight, each payload, each specified force.
 
     Rounding noise, against the largest translation or rotation, is shown as 0.
 

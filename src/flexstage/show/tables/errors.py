@@ -34,7 +34,7 @@ def drift_table(drift: Drift) -> Table:
 
 
 def ground_text(ground: Ground) -> str:
-    """What the ground was taken to be of, and why.
+    """Material of the ground, and its source.
 
     >>> ground_text(Ground("steel", "as stated")), ground_text(Ground("steel", "all links that stand on it are of it"))
     ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
@@ -78,7 +78,7 @@ def _budget_table(title: str, matrix: Matrix, sums: Array, budget: ErrorBudget) 
 
 
 def gauge_drift_table(drift: Drift) -> Table | None:
-    """What the gauges read per kelvin; `None` without gauges.
+    """Gauge readings per kelvin; `None` without gauges.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

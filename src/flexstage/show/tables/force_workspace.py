@@ -1,4 +1,4 @@
-"""Tables of a force workspace: travel, its limits, and current, voltage and heat of holding it."""
+"""Tables of a force workspace: travel, its limits, and continuous current, voltage and heat."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from flexstage.show.table import Table, column_table, result_table
 
 
 def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
-    """The travel along each coordinate with its limits; the inputs of every coil that hold it."""
+    """The travel along each coordinate with its limits; the continuous inputs of every coil there."""
     yield result_table(found)
     if found.current.columns:
         yield column_table(

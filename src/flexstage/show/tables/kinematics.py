@@ -11,7 +11,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 
 def mobility_table(kinematics: Kinematics) -> Table | None:
-    """Freedoms of the platform, strokes, and how they match.
+    """DOFs of the platform, strokes, and their numbers.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -32,7 +32,7 @@ def mobility_table(kinematics: Kinematics) -> Table | None:
 
 
 def actuation_text(kinematics: Kinematics) -> str:
-    """In one sentence or two, whether the strokes determine the platform, and what forces can command.
+    """State in one or two sentences whether the strokes determine the platform, and which motions forces command.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -54,7 +54,7 @@ def actuation_text(kinematics: Kinematics) -> str:
 
 
 def _command_text(kinematics: Kinematics) -> str:
-    """Which ideal motions forces, with the strokes, can command."""
+    """Ideal motions that forces, with the strokes, can command."""
     known = kinematics.commanded
     left = [name for name in kinematics.coordinates if name not in known]
     reach = f"with any strokes they push along {', '.join(known)}" if known else "they push along no coordinate alone"
@@ -64,7 +64,7 @@ def _command_text(kinematics: Kinematics) -> str:
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
-    """V^T W: what a unit of each force actuator's input exerts along the ideal motions; `None` without force actuators.
+    """V^T W: generalised forces of a unit input of each force actuator along the ideal motions; `None` without force actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -82,7 +82,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
 
 
 def mapping_table(kinematics: Kinematics) -> Table:
-    """R_a = da/dxi: what each actuator must expand for each motion of the platform. Refused for under-actuated stages.
+    """R_a = da/dxi: stroke of each actuator for each motion of the platform. Refuses under-actuated stages.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -93,7 +93,7 @@ def mapping_table(kinematics: Kinematics) -> Table:
 
 
 def gauge_table(kinematics: Kinematics) -> Table:
-    """R_s = ds/dx: what each gauge reads for each motion of the platform.
+    """R_s = ds/dx: reading of each gauge for each motion of the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -104,7 +104,7 @@ def gauge_table(kinematics: Kinematics) -> Table:
 
 
 def jacobian_table(kinematics: Kinematics) -> Table:
-    """J = dx/da: what the platform does when one actuator expands.
+    """J = dx/da: motion of the platform for the stroke of one actuator.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -115,7 +115,7 @@ def jacobian_table(kinematics: Kinematics) -> Table:
 
 
 def motion_table(kinematics: Kinematics) -> Table | None:
-    """V: the platform's ideal motions where it has fewer than six; the entries outside the named coordinates are parasitic.
+    """V: the platform's ideal motions if it has fewer than six; entries outside the named coordinates are parasitic.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -132,7 +132,7 @@ def motion_table(kinematics: Kinematics) -> Table | None:
 
 
 def freedom_table(kinematics: Kinematics) -> Table:
-    """Which freedoms were taken as free at each link; links alike in copies of a unit share a row.
+    """Free DOFs of each link in the ideal model; equal links in instances of a unit share a row.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

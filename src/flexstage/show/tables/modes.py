@@ -10,7 +10,7 @@ from flexstage.show.table import Table, batch_note, result_table
 PLATFORM_MODES = (
     f"With a platform mode, one more direction of the platform has {percent(THRESHOLD, 2)} of its compliance from the modes so far."
 )
-"""Which modes are the platform's."""
+"""Criterion for platform modes."""
 
 _FURTHER = 3
 

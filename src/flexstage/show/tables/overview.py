@@ -1,4 +1,4 @@
-"""The short form of an analysis, one screen: the platform axis by axis, its modes, lost motion, and the verdict with what to look at."""
+"""The short form of an analysis, one screen: the platform axis by axis, its modes, lost motion, the verdict and its reasons."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them u
 
 
 def stage_text(analysis: Analysis) -> str:
-    """What was analysed: the stage, the model, its freedoms and what drives and reads it, in a line.
+    """The analysed stage in one line: model, DOFs, actuators and gauges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -44,7 +44,7 @@ def stage_text(analysis: Analysis) -> str:
 
 
 def load_line(analysis: Analysis) -> str | None:
-    """What weight, payloads and forces change; `None` where nothing is known of it or nothing loads the stage.
+    """The effect of weight, payloads and forces; `None` if unknown or without a load.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -55,7 +55,7 @@ def load_line(analysis: Analysis) -> str | None:
 
 
 def small_line(analysis: Analysis) -> str | None:
-    """By how much linear kinematics is off over the strokes; `None` where no motion is known.
+    """The error of linear kinematics over the strokes; `None` without a known motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -66,7 +66,7 @@ def small_line(analysis: Analysis) -> str | None:
 
 
 def count_text(count: int, thing: str) -> str:
-    """How many there are of a thing.
+    """A count with its noun.
 
     >>> count_text(2, "gauge")
     '2 gauges'
@@ -81,7 +81,7 @@ def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
 
 
 def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | str | None]:
-    """The platform's axes and modes, lost motion, and what its parts bear; the first table `explained` by notes.
+    """The platform's axes and modes, lost motion, and strength; the first table `explained` by notes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -99,7 +99,7 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
 
 
 def axis_table(analysis: Analysis) -> Table | None:
-    """The platform axis by axis: stroke and what ends it, stiffness, resolution; `None` where the model gives none of it.
+    """The platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has none of them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -137,7 +137,7 @@ def _axis_note(analysis: Analysis) -> str:
 
 
 def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
-    """Stroke both ways and what ends it, by coordinate."""
+    """Stroke in both directions and its limit, by coordinate."""
     if analysis.workspace is not None:
         single = analysis.workspace.corrected or analysis.workspace.single_axis
         names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single_axis.limiting
@@ -156,7 +156,7 @@ def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
 
 
 def _stiffness(analysis: Analysis) -> Mapping[str, str]:
-    """One over the diagonal of the compliance, by axis; nothing where an axis gives way freely."""
+    """One over the diagonal of the compliance, by axis; nothing for an axis without stiffness."""
     if analysis.statics is None:
         return {}
     compliance = np.diagonal(np.real(first_design(analysis.statics.compliance.values, 2)))
@@ -191,7 +191,7 @@ def _platform_modes(modes: Modes) -> Table | None:
 
 
 def lowest_mode(modes: Modes) -> str | None:
-    """The lowest mode of the whole stage, and the body that moves most in it; `None` where there is no mode.
+    """The lowest mode of the whole stage, and the body with the largest motion; `None` without a mode.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -206,7 +206,7 @@ def lowest_mode(modes: Modes) -> str | None:
 
 
 def _first_rows(table: Table) -> Table:
-    """Actuator, gain, loss and largest contribution; equal ones in one row. A note counts the rows that are left out."""
+    """Actuator, transmission ratio, loss and largest contribution; equal ones in one row. A note counts the rows left out."""
     rows = [(*row[:_LOSS], replace(row[-1], text=row[-1].text.partition(", ")[0])) for row in table.rows]
     shown = make_table(table.title, [*table.columns[:_LOSS], "largest contribution"], rows, provenance=table.provenance)
     return first_rows(merge_rows(shown), _ROWS)
@@ -224,7 +224,7 @@ def _strength_text(analysis: Analysis) -> str | None:
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
-    """The verdict: how many requirements are met, the least margin, what to look at, and what else there is to see.
+    """The verdict: the number of met requirements, the smallest margin, its cause, and further options.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -246,13 +246,13 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
 
 
 def _rank(verdict: Verdict) -> tuple[bool, float]:
-    """Missed before met, least margin first, unknown before all."""
+    """Failed before met, smallest margin first, unknown before all."""
     margin = first_margin(verdict)
     return is_met(verdict), -np.inf if np.isnan(margin) else margin
 
 
 def _cause(analysis: Analysis, verdict: Verdict) -> str:
-    """What decides a measure, where the analysis tells."""
+    """The cause of a measure's value, if the analysis contains it."""
     find = _CAUSES.get(verdict.requirement.kind)
     return "" if find is None else find(analysis, verdict.requirement.name)
 

@@ -1,4 +1,4 @@
-"""Tables of statics: stiffness, compliance, stiffness by freedom and by direction, mass."""
+"""Tables of statics: stiffness, compliance, stiffness by DOF and by direction, mass."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _STEP = 15
 
 
 def stiffness_table(statics: Statics) -> Table:
-    """K of the platform, strokes held.
+    """K of the platform, actuators fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -31,7 +31,7 @@ def stiffness_table(statics: Statics) -> Table:
 
 
 def compliance_table(statics: Statics) -> Table:
-    """C of the platform, strokes held.
+    """C of the platform, actuators fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -43,7 +43,7 @@ def compliance_table(statics: Statics) -> Table:
 
 
 def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
-    """Stiffness by freedom: along the ideal motions left, then along what the links hold.
+    """Stiffness by DOF: along the free ideal motions, then along the constrained ones.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -61,7 +61,7 @@ def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
 
 
 def mass_tables(mass: MassMatrix) -> Iterator[Table]:
-    """Mass at the point: of its body with payloads alone, and of the whole stage as it is felt there.
+    """Mass at the point: of its body with payloads, and the condensed mass of the whole stage.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -106,7 +106,7 @@ def _along(stiffness: DirectionalStiffness, angles: Array) -> Array:
 
 
 def principal_table(statics: Statics) -> Table | None:
-    """Principal stiffnesses in the plane with their directions, with the other freedoms free and held.
+    """Principal stiffnesses in the plane with their directions, with the other DOFs free and fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

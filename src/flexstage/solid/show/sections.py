@@ -1,4 +1,4 @@
-"""Sections of the solid model: hinges, units and stage by finite elements, theory beside them, and pictures of deformed solids."""
+"""Sections of the solid model: hinges, units and stage by finite elements, compared with theory, and pictures of deformed solids."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
 
 
 def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
-    """Every distinct unit alone, with its stress at the full stroke."""
+    """Every distinct isolated unit, with its stress at the full stroke."""
     blocks: list[Block | None] = [solid_unit_table(found)]
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
@@ -116,25 +116,25 @@ def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
 
 
 def _stress_picture(stage: SolidStage) -> Picture:
-    assert stage.worst is not None  # noqa: S101  there is a worst corner wherever there is a stress
+    assert stage.worst is not None  # noqa: S101  every stress has a worst corner
     surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
     caption = "Von Mises stress at the corner of the strokes that is worst for the weakest link, dead load included; motion magnified."
     return Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), "stress", caption), caption)
 
 
 def verification_headline(found: Verification) -> Headline:
-    """The headline of a verification, and whether theory will do for all of the widest group."""
+    """The headline of a verification, and whether theory is sufficient for all of the widest group."""
     rows = list(found.groups.values())[-1]
     return Headline(found.headline, all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """The platform's modes by finite elements as motions of a viewer, with the modes of theory they are paired with."""
+    """The platform's modes by finite elements as motions of a viewer, with the paired modes of theory."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 
 def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """The same of any model of finite elements, on the bodies of a viewer."""
+    """The same for any model of finite elements, on the bodies of a viewer."""
     found: list[Motion] = []
     for index in moving.modes.platform:
         twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
@@ -147,7 +147,7 @@ def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = Ma
 
 
 def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping[int, Pair], Section | None]:
-    """The modes of theory that those of finite elements are paired with, by index, and both side by side."""
+    """The modes of theory paired with those of finite elements, by index, and both side by side."""
     model = lumped(mechanism)
     pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
     alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
@@ -158,6 +158,6 @@ def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping
 
 
 def verification_section(found: Verification) -> Section | None:
-    """Theory beside finite elements, with the verdicts in words first."""
+    """Theory compared with finite elements, starting with the verdicts as text."""
     tables = [verification_table(rows) for rows in found.groups.values()]
     return section("Theory and finite elements", [verdict_table_of(found), *tables])

@@ -64,7 +64,7 @@ def optimise(
 
 
 def _require_solution(found: Optimum | Front) -> None:
-    """Refuse what has no design that keeps the limits, or none that can be made."""
+    """Refuse a result without a feasible design, or without a feasible rounded one."""
     require(Finding("limits", *contradiction_text(each, found)) for each in found.contradictions)
     reason = found.failure
     if reason:

@@ -1,4 +1,4 @@
-"""The command `tolerance`: copies of a stage as manufacture and material make them, and what that allows."""
+"""The command `tolerance`: samples of a stage with scatter of dimensions and materials, yield and allowable tolerances."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ _MOST = 2
 
 @check_arguments
 def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
-    """Read the optimisation problem from the study's own text. Raises `DesignError` with every finding, each at `where`.
+    """Read the optimisation problem from the study's own text. Raises `DesignError` with every error, each at `where`.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> load_optimisation(leaf_study()[0]).starts

@@ -1,4 +1,4 @@
-"""The study's file: TOML with unit strings, read with all its findings at once."""
+"""The study's file: TOML with unit strings, read with all its errors at once."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ _MOST = 10**9
 
 @check_arguments
 def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's file; a design file that it names is looked for beside it.
+    """Read a study's file; its design file is searched in the same folder.
 
-    Raises `DesignError` with every finding: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
+    Raises `DesignError` with every error: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
 
     >>> load_study("nowhere/study.toml")
     Traceback (most recent call last):
@@ -44,7 +44,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 
 def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -> Study:
-    """Read a study from its text; `folder` is where design files are looked for.
+    """Read a study from its text; `folder` is that of design files.
 
     >>> study = loads_study('''
     ... format = "flexstage study 1"
@@ -69,9 +69,9 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """What all studies' files have: the file as it is written, its design and what is asked of it, with the `findings` so far.
+    """Common part of all studies' files: the file as written, its design and responses, with the `findings` so far.
 
-    `variant` is the case that the design is drawn from; `None`: a design file.
+    `variant` is the case of the design; `None`: a design file.
     """
 
     file: StudyFile
@@ -83,7 +83,7 @@ class Opening:
 
 
 def read_opening(text: str, where: str, folder: Path | None) -> Opening:
-    """Read what all studies' files have. Raises `DesignError` where there is no design to go on with.
+    """Read the common part of all studies' files. Raises `DesignError` without a valid design.
 
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"' + chr(10) + 'responses.f = "frequency.1"'
     >>> list(read_opening(text, "here", None).responses)
@@ -99,7 +99,7 @@ def read_opening(text: str, where: str, folder: Path | None) -> Opening:
 
 
 def _variables(tables: Mapping[str, VariedTable], head: Opening) -> tuple[Variable, ...]:
-    """All variables; the name of one that gives no address is its address."""
+    """All variables; without an address, the name of a variable is its address."""
     if not tables:
         what = 'Use e.g. neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
         head.findings.append(Finding("variables", "nothing is varied", what))
@@ -153,7 +153,7 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
 
 
 def _quantity(where: str, addresses: tuple[str, ...], design: Mechanism) -> Quantity:
-    """The quantity of what is moved; all addresses must have the same."""
+    """The quantity of a variable; all addresses must have the same."""
     found: list[Quantity] = []
     findings: list[Finding] = []
     for address in addresses:

@@ -1,4 +1,4 @@
-"""Designs of a study under their dead load: which do not hold, and how near to that the ranges come."""
+"""Stability of a study's designs under their permanent load, and its margin over the ranges."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from flexstage.models.lumped import lumped
 from flexstage.studies.sweeps.definition import Study
 
 _ENDS = 8
-"""Of more variables the first designs of the plan are looked at, not the ends of every range."""
+"""Largest number of variables with a check of all range ends; else the first designs of the plan are checked."""
 _FIRST = 16
 _AT_ONCE = 64
 _MARGIN = 2.0
-"""How far below what any end of the ranges has a design between them is reckoned with."""
+"""Assumed ratio between the load factor at the range ends and that of a design between them."""
 
 
 def needs_load_check(study: Study) -> bool:
-    """Whether designs must be asked one by one if they hold: an end of the ranges has a load factor that is not far above what is told.
+    """Whether designs need individual stability checks: the load factor at a range end is not far above the limit.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> needs_load_check(neck_study())
@@ -33,7 +33,7 @@ def needs_load_check(study: Study) -> bool:
 
 
 def unstable_designs(study: Study, values: Array) -> dict[int, str]:
-    """Why designs with `values` (n, d) of the variables do not hold, by row; those without an elastic model are told elsewhere.
+    """Reasons why designs with `values` (n, d) of the variables are unstable, by row; without an elastic model another check reports.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> unstable_designs(neck_study(), np.array([[0.00154]]))
@@ -47,7 +47,7 @@ def unstable_designs(study: Study, values: Array) -> dict[int, str]:
 
 
 def loaded_findings(study: Study) -> tuple[Finding, ...]:
-    """The least load factor that an end of the ranges has, where weight, payloads and forces change what is computed there.
+    """The smallest load factor at the range ends, if weight, payloads and forces are significant there.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> loaded_findings(neck_study())
@@ -63,7 +63,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
 
 
 def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
-    """Warnings about the design with `values` (d,) under its dead load. Raises `DesignError` where it does not hold.
+    """Warnings about the design with `values` (d,) under its permanent load. Raises `DesignError` if it is unstable.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_stable(neck_study(), np.array([0.00154]))
@@ -79,7 +79,7 @@ def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
 
 @SESSION.keep(2)
 def _least(study: Study) -> tuple[float, Array]:
-    """The least load factor among the ends of every range, others as drawn, and the corner of the worse ends; and the values there."""
+    """The smallest load factor among the ends of every range, others nominal, and the corner of the worse ends; and the values there."""
     if not _has_load(study.design):
         return np.inf, np.zeros(len(study.variables))
     probes = _probes(study)
@@ -93,7 +93,7 @@ def _least(study: Study) -> tuple[float, Array]:
 
 
 def _probes(study: Study) -> Array:
-    """The design as drawn and the low and high end of each variable in turn; of many variables the first designs."""
+    """The nominal design and the low and high end of each variable in turn; of many variables the first designs."""
     if len(study.variables) > _ENDS:
         return study.sample(0, min(_FIRST, study.plan.designs))
     drawn = np.array([np.clip(each.nominal(study.design), each.low, each.high) for each in study.variables])
@@ -104,12 +104,12 @@ def _probes(study: Study) -> Array:
 
 
 def _has_load(design: Mechanism) -> bool:
-    """Whether there is any dead load: a study may vary it, so one that is stated as nothing counts only where it stays so."""
+    """Whether there is any permanent load, possibly varied by the study."""
     return bool(np.any(np.real(stack(design.gravity)) != 0.0)) or bool(design.forces)
 
 
 def _factors(study: Study, values: Array) -> Array:
-    """Load factors (n,) of the dead load; infinite where a design has no elastic model."""
+    """Load factors (n,) of the permanent load; infinite without an elastic model."""
     if len(values) > _AT_ONCE:
         return np.concatenate([_factors(study, values[start : start + _AT_ONCE]) for start in range(0, len(values), _AT_ONCE)])
     try:

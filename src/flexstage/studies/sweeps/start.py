@@ -1,4 +1,4 @@
-"""The design that a study starts from: a design file, or a shipped case with parameters; and the parameters that are varied."""
+"""Initial design of a study: a design file, or a shipped case with parameters; and the varied parameters."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.studies.form import StudyFile, VariedTable
 
 
 def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
-    """The design that a study's file names, and the case that it is drawn from: `None` for a design file, looked for in `folder`.
+    """The design of a study's file, and its case: `None` for a design file, which is searched in `folder`.
 
-    Raises `DesignError` where there is none.
+    Raises `DesignError` without a design.
 
     >>> from flexstage.studies.form import study_file
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "hexapod"' + chr(10) + 'parameters.slope = "50 deg"'
@@ -36,14 +36,14 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
 
 
 def _draw(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
-    """The case with the parameters that the table states."""
+    """The case with the parameters of the table."""
     stated = _read_parameters(name, table)
     changed = case(name, stated)
     return changed, Variant(name, tuple((each, parameter(changed, each).value) for each in stated))
 
 
 def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
-    """What the table states: numbers of a quantity with their units."""
+    """Parameters in the table: numbers of a quantity with their units."""
     found: dict[str, Stated] = {}
     findings: list[Finding] = []
     for key, value in _leaves(table):
@@ -60,7 +60,7 @@ def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
 
 
 def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """Keys and values: dots of a key open tables in TOML, and are dots of a name here."""
+    """Keys and values: dots of a key open tables in TOML, but are part of a name here."""
     for key, value in tree.items():
         if isinstance(value, Mapping):
             yield from _leaves(value, f"{above}{key}.")
@@ -69,7 +69,7 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
 
 
 def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
-    """The parameters that a variable's table at `where` names, by full name, and their quantity. Raises `DesignError` with all findings.
+    """The parameters in a variable's table at `where`, by full name, and their quantity. Raises `DesignError` with all errors.
 
     >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck_radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name
@@ -96,7 +96,7 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
 
 
 def one_quantity(where: str, found: list[Quantity]) -> Quantity:
-    """The quantity that all have; raises `DesignError` where they have several.
+    """The common quantity; raises `DesignError` for several.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> one_quantity("variables.a.address", [LENGTH, LENGTH]).name

@@ -1,4 +1,4 @@
-"""Numbers that scatter could take to where nothing can be made: a thickness below nought."""
+"""Numbers that scatter could move out of their bounds, e.g. a negative thickness."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.studies.tolerances.scatter import Deviation, Target
 
 
 def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tuple[Deviation, ...]) -> Iterator[Finding]:
-    """Numbers that deviations could take out of their bounds: five standard deviations of what is not truncated, all of what is bounded.
+    """Numbers with possible values out of bounds: within five standard deviations without truncation, else within the largest deviation.
 
-    One finding an entry of `[scatter]`, about the number that it takes farthest.
+    One error for each entry of `[scatter]`, about the number with the largest excess.
 
     >>> from flexstage.studies.tolerances.distribution import Distribution, Shape
     >>> from flexstage.base.units.quantity import LENGTH
@@ -49,7 +49,7 @@ def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tupl
 
 
 def _reach(target: Target, variables: tuple[Deviation, ...]) -> float:
-    """How far deviations go together: bounded ones add up, of the others five standard deviations of their sum."""
+    """Common reach of deviations: the sum of bounded ones, plus five standard deviations of the sum of the others."""
     bounded, spread = 0.0, 0.0
     for number, factor in target.factors:
         variable = variables[number]

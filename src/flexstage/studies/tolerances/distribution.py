@@ -1,4 +1,4 @@
-"""Distributions of deviations about nought: normal, perhaps with rejects taken out, and uniform."""
+"""Distributions of deviations about zero: normal, optionally truncated, and uniform."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import scipy
 from flexstage.base.number import Array
 
 REACH = 5.0
-"""How many standard deviations an untruncated normal is taken to reach when a number is checked against its bounds."""
+"""Assumed reach of an untruncated normal distribution for bounds, in standard deviations."""
 _LEAST = 2.0**-54
 
 
@@ -24,7 +24,7 @@ class Shape(Enum):
 
 @dataclass(frozen=True)
 class Distribution:
-    """A distribution about nought of `size`; of a normal one, what lies beyond plus or minus `within` is sorted out."""
+    """A distribution about zero of `size`; a normal one is truncated at plus or minus `within`."""
 
     shape: Shape
     size: float
@@ -60,7 +60,7 @@ class Distribution:
 
     @property
     def largest(self) -> float | None:
-        """The largest deviation there is, if there is one.
+        """The largest deviation, if it is bounded.
 
         >>> Distribution(Shape.NORMAL, 1.0).largest is None
         True
@@ -68,7 +68,7 @@ class Distribution:
         return self.size if self.shape is Shape.UNIFORM else self.within
 
     def times(self, factor: float) -> Distribution:
-        """The same shape, so many times as wide.
+        """The same shape, with a width multiplied by a factor.
 
         >>> Distribution(Shape.NORMAL, 1.0, within=2.0).times(2.0)
         Distribution(shape=<Shape.NORMAL: 'normal'>, size=2.0, within=4.0)
@@ -77,4 +77,4 @@ class Distribution:
 
 
 NONE = Distribution(Shape.NORMAL, 0.0)
-"""What does not deviate."""
+"""No deviation."""

@@ -35,10 +35,10 @@ _MOST = 10**7
 
 @check_arguments
 def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
-    """Read a study's file with sections `[scatter]` and, if need be, `[tolerance]`.
+    """Read a study's file with sections `[scatter]` and, optionally, `[tolerance]`.
 
-    Raises `DesignError` with every finding: what points nowhere (with the nearest names), deviations that are not above nought or wider
-    than the number, `independent` of what there is only one of.
+    Raises `DesignError` with every error: unknown addresses (with the nearest names), deviations that are not positive or exceed
+    the number, `independent` for a single number.
 
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
@@ -49,7 +49,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
 
 
 def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = None) -> Tolerance:
-    """Read a tolerance study from its text; `folder` is where design files are looked for.
+    """Read a tolerance study from its text; `folder` is that of design files.
 
     >>> study = loads_tolerance('''
     ... format = "flexstage study 1"
@@ -82,7 +82,7 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
 
 @dataclass(frozen=True, eq=False)
 class _Reached:
-    """The design, and which shared number each copy's own comes from."""
+    """The design, and the shared number behind each instance's own."""
 
     design: Mechanism
     shared: dict[str, str] = field(default_factory=dict)
@@ -135,7 +135,7 @@ def _scatters(tables: Mapping[str, ScatterTable], bench: _Reached, findings: lis
 
 
 def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
-    """One entry; raises `DesignError` with all findings about it."""
+    """One entry; raises `DesignError` with all errors in it."""
     where = f"scatter.{name}"
     sources = table.address or (name,)
     findings: list[Finding] = []
@@ -176,7 +176,7 @@ def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings:
 
 
 def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
-    """Which distribution is meant."""
+    """The specified distribution."""
     given = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
     if len(given) != 1:
         what = "it is both normal and uniform" if given else "it is not said how far it deviates"
@@ -187,7 +187,7 @@ def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
 
 
 def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quantity) -> tuple[Distribution, bool]:
-    """The distribution, and whether its numbers are shares of what the design states."""
+    """The distribution, and whether its numbers are shares of the design's value."""
     raw = {shape.value: table.normal if shape is Shape.NORMAL else table.uniform, "within": table.within}
     given = {key: text for key, text in raw.items() if text is not None}
     if len({is_share(text) for text in given.values()}) > 1:
@@ -207,7 +207,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
 
 
 def _command(table: ToleranceTable, design: Mechanism, findings: list[Finding]) -> Command | None:
-    """What the nominal stage is commanded by; nothing where it is not wanted, or not said and not to be had."""
+    """The nominal stage's command; nothing if it is disabled, or neither requested nor available."""
     if table.crosstalk is False:
         return None
     try:

@@ -1,4 +1,4 @@
-"""The palette: parts, units and gauges as texts of a design file, with what a person fills in."""
+"""The palette: parts, units and gauges as texts of a design file, with fields to fill in."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 
 @lru_cache(maxsize=1)
 def snippets() -> tuple[Snippet, ...]:
-    """All that the palette offers."""
+    """All snippets of the palette."""
     found = tomllib.loads(resources.files("flexstage.apps.studio").joinpath("palette.toml").read_text(encoding="utf-8"))
     return tuple(
         Snippet(name, each["group"], each["title"], each["text"].strip("\n") + "\n", each["fields"]) for name, each in found.items()
@@ -21,9 +21,9 @@ def snippets() -> tuple[Snippet, ...]:
 
 
 def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
-    """The text with a snippet's tables behind those that it has, entries of one table behind the entries there are.
+    """The text with a snippet's tables after the existing ones, and its entries of an existing table after the existing entries.
 
-    Raises `DesignError` for a snippet or field that is none, for a text that is no TOML, and for names that are taken.
+    Raises `DesignError` for an unknown snippet or field, for a text that is not TOML, and for names in use.
     """
     known = {each.name: each for each in snippets()}
     if snippet not in known:

@@ -1,4 +1,4 @@
-"""Figures of optimisations: how searches converge, variables before and after, fronts."""
+"""Figures of optimisations: convergence of searches, variables before and after, fronts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.studies.optimisation.result import Front, Optimum
 
 
 def convergence_figure(found: Optimum) -> Any:
-    """The objective over accepted designs, one line a start; open marks do not keep all limits. Beside it the variables in their ranges.
+    """The objective over accepted designs, one line for each start; open marks are infeasible. Right: the variables in their ranges.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
@@ -43,7 +43,7 @@ def _histories(ax: Any, found: Optimum) -> None:
 
 
 def _ranges(ax: Any, found: Optimum) -> None:
-    """Every variable's range as a bar: a bar's end is the range's."""
+    """Every variable's range as a bar from end to end."""
     names = [each.name for each in found.study.variables]
     final = found.final or found.point
     for row, before in enumerate(found.before.shares):
@@ -60,7 +60,7 @@ def _ranges(ax: Any, found: Optimum) -> None:
 
 
 def front_figure(found: Front) -> Any:
-    """Both objectives of the designs of a front, and the design as it stands."""
+    """Both objectives of the designs of a front, and the nominal design."""
     forms = [
         display_unit_of(each.measure.quantity.si, float(np.max(np.abs([*found.values[:, number], found.before.values[number]]))))
         for number, each in enumerate(found.definition.objectives)

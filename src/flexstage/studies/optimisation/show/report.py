@@ -1,4 +1,4 @@
-"""Reports of optimisations: one HTML file each that stands alone."""
+"""Reports of optimisations: self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _SEARCH = (
 
 
 def optimise_report(found: Optimum) -> str:
-    """An optimisation as a page of HTML: objective, variables, limits, what binds, convergence.
+    """An optimisation as an HTML page: objective, variables, limits, binding limits, convergence.
 
-    Raises `DesignError` where the best design does not hold under its dead load.
+    Raises `DesignError` if the best design is unstable under its permanent load.
     """
     study = found.study
     warnings = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
@@ -52,7 +52,7 @@ def optimise_report(found: Optimum) -> str:
 
 
 def _stage(stages: Mapping[str, StageData]) -> Section | None:
-    """The optimum, with the design as it stands behind it and, where nothing turns, beside it."""
+    """The optimum with the nominal design behind it, or, without a viewer, next to it."""
     if "before" not in stages:
         return stage_section(stages["stage"])
     drawn = {"as it stands": stages["before"], "the optimum": stages["stage"]}
@@ -67,7 +67,7 @@ def _still(data: StageData, name: str, caption: str) -> Picture:
 
 
 def front_report(found: Front) -> str:
-    """A front as a page of HTML."""
+    """A front as an HTML page."""
     picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
     data = stage_data(found.study.design)
     sections = [
@@ -80,7 +80,7 @@ def front_report(found: Front) -> str:
 
 
 def _headline(found: Optimum) -> Headline:
-    """The objective before and after, and how many limits are kept."""
+    """The objective before and after, and the number of met limits."""
     asked, point = found.definition.objectives[0], found.final
     if point is None:
         return Headline(f"No design was found: {found.failure}.", good=False)

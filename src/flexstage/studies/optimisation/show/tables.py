@@ -14,7 +14,7 @@ from flexstage.studies.sweeps.definition import Study
 
 
 def optimise_tables(found: Optimum) -> list[Table | None]:
-    """Objective and variables before and after, limits, what binds and what it costs, the starts.
+    """Objective and variables before and after, limits, binding limits and their sensitivities, the starts.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
@@ -100,7 +100,7 @@ def _starts(found: Optimum) -> dict[str, Start]:
 
 
 def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:
-    """What contradicts and how nearly the limits can be met, in words: what was found, and the advice."""
+    """A contradiction as text, with the nearest values of its limits, and the advice."""
     said = [f"'{limit.key} {limit.text}'" for limit in each.limits]
     at = [_nearest_value(limit.key, limit.point, each.point, found) for limit in each.limits]
     least = f"the least violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"

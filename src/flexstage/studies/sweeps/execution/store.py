@@ -1,8 +1,8 @@
-"""Results of studies on disk: pieces written one by one, gathered into one HDF5 file that describes itself.
+"""Results of studies on disk: pieces written one by one, combined in one self-describing HDF5 file.
 
-`results.h5` holds what has been gathered; `results.h5.pieces/` the pieces since. Whatever is renamed is whole, so that the reader, which
-opens both, finds every computed design exactly once at any moment. A file with the same designs has the same bytes, no matter how often
-the run was interrupted.
+`results.h5` contains the combined pieces; `results.h5.pieces/` the later ones. Only complete files are renamed, so that the reader of
+both finds every computed design exactly once at any time. Files with the same designs have the same bytes, regardless of
+interruptions.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ FORMAT = "flexstage results 1"
 _ATTEMPTS = 20
 _PIECES = ".pieces"
 _FRAME, _ENTRY = 100_000, 64
-"""What a results file takes at most besides its numbers and reasons [B]: its frame, the entry of a failure."""
+"""Size of a results file besides numbers and reasons [B]: its frame, the entry of a failure."""
 
 _ABOUT = (
     "Designs of a study, one a row of variables and responses, in SI by their attributes names, units and of (what they are; variables in "
@@ -42,7 +42,7 @@ _ABOUT = (
 
 @dataclass(frozen=True)
 class Failure:
-    """A design, or copy, without values: its number, and why."""
+    """A design, or sample, without values: its number, and the reason."""
 
     design: int
     reason: str
@@ -52,8 +52,8 @@ class Failure:
 class Results:
     """Designs computed so far: `designs` (n,) their numbers, `variables` (n, d), `responses` (n, r) in SI, failures by design number.
 
-    `names` and `units` are those of the variables, then of the responses; `planned` designs in all; `facts` what they depend on; `text` the
-    study's file; `made` by which versions of what they were computed, one text each.
+    `names` and `units` are those of the variables, then of the responses. `planned` is the number of designs, `facts` are their inputs.
+    `text` is the study's file; `made` are the versions of the programs, one text each.
     """
 
     designs: Array
@@ -69,7 +69,7 @@ class Results:
 
     @property
     def complete(self) -> bool:
-        """Whether every planned design is there."""
+        """Whether every planned design is computed."""
         return len(self.designs) == self.planned
 
     @property
@@ -100,7 +100,7 @@ class Results:
 
 
 def folder_of(path: Path) -> Path:
-    """Where the pieces of a results file wait to be gathered.
+    """The folder of pieces of a results file.
 
     >>> folder_of(Path("a/results.h5")).as_posix()
     'a/results.h5.pieces'
@@ -111,7 +111,7 @@ def folder_of(path: Path) -> Path:
 def write_piece(folder: Path, found: Piece) -> Path:
     """Write a piece into the folder: `<start>.npz`, the designs from `start` on.
 
-    Raises `DesignError` where the disk refuses.
+    Raises `DesignError` if the disk refuses.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as place:
@@ -146,7 +146,7 @@ def read_piece(path: Path) -> Piece:
 
 
 def pending_pieces(path: Path) -> dict[int, Path]:
-    """Pieces that are not gathered yet, by their first design.
+    """Pieces not yet combined, by their first design.
 
     >>> pending_pieces(Path("nowhere/results.h5"))
     {}
@@ -167,9 +167,9 @@ def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], t
 
 
 def open_results(path: Path) -> Hdf:
-    """The results file, read by the process that reads all HDF5 files; nobody writes to one that is there, so that no lock is needed.
+    """The results file, read by the process for all HDF5 files; existing files are never written, so that no lock is needed.
 
-    Raises `FileNotFoundError` for a file that is not there, `DesignError` for one that is none.
+    Raises `FileNotFoundError` for a missing file, `DesignError` for an invalid one.
 
     >>> open_results(Path("nowhere/results.h5"))
     Traceback (most recent call last):
@@ -185,7 +185,7 @@ def open_results(path: Path) -> Hdf:
 
 
 def _damage_findings(file: Hdf) -> Iterator[Finding]:
-    """What results have and this file has not, or not as it should."""
+    """Missing or invalid parts of a results file."""
     advice = "It was changed or is damaged: take it away, or name another file"
     attributes = file.attributes
     wrong = [key for key in ("planned", "piece") if not _is_count(attributes.get(key))] + ["study"] * (
@@ -215,7 +215,7 @@ def _is_count(value: Attribute | None) -> bool:
 
 @check_arguments
 def read_results(path: str | os.PathLike[str]) -> Results:
-    """Read results, complete or not, by their file or the folder of pieces beside it. Raises `DesignError` for files that are none.
+    """Read results, complete or not, from their file or the folder of pieces next to it. Raises `DesignError` for invalid files.
 
     >>> read_results("nowhere/results.h5")
     Traceback (most recent call last):
@@ -226,7 +226,7 @@ def read_results(path: str | os.PathLike[str]) -> Results:
     target = Path(where.rstrip("/").removesuffix(_PIECES))
     if not target.exists():
         raise refuse(where, "file not found", "Check the path")
-    for _ in range(_ATTEMPTS):  # a piece that is gathered while we look is gone from the folder, and in the file the next time
+    for _ in range(_ATTEMPTS):  # a piece combined meanwhile is in the file at the next attempt
         pieces = list(pending_pieces(target).values())
         try:
             return _read(open_results(target), pieces)
@@ -237,7 +237,7 @@ def read_results(path: str | os.PathLike[str]) -> Results:
 
 @dataclass(frozen=True, eq=False)
 class _Stored:
-    """All planned designs, NaN where not computed; which pieces (k,) of `size` designs are `computed`; failures by design number."""
+    """All planned designs, NaN if not computed; mask (k,) of `computed` pieces of `size` designs; failures by design number."""
 
     size: int
     variables: Array
@@ -247,7 +247,7 @@ class _Stored:
     made: set[str]
 
     def add(self, pieces: Iterable[Piece]) -> None:
-        """Add the pieces that are not there yet."""
+        """Add the missing pieces."""
         for each in pieces:
             if not self.computed[each.start // self.size]:
                 rows = slice(each.start, each.start + len(each.variables))
@@ -292,9 +292,9 @@ def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
 
 
 def gather(path: Path, study: Study, size: int) -> Array:
-    """Write the results file again with all pieces of `size` designs there are, and remove them; which pieces (k,) it holds now.
+    """Write the results file with all pieces of `size` designs, and remove them; returns the mask (k,) of its pieces.
 
-    Raises `DesignError` where the disk refuses; then file and pieces are as they were.
+    Raises `DesignError` if the disk refuses; then file and pieces are unchanged.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -318,7 +318,7 @@ def gather(path: Path, study: Study, size: int) -> Array:
 
 
 def _write(file: Any, stored: _Stored, study: Study) -> None:
-    """The whole file: numbers with names and units, and what the study was."""
+    """The complete file: numbers with names and units, and the study."""
     import h5py
 
     names, units = columns_of(study)
@@ -343,7 +343,7 @@ def _write(file: Any, stored: _Stored, study: Study) -> None:
 
 
 def require_room(path: Path, study: Study) -> None:
-    """Raise `DesignError` where the disk has no room for a study's results: the file, and its pieces until they are gathered.
+    """Raise `DesignError` if the disk has no space for a study's results: the file, and its pieces until they are combined.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_room(Path("results.h5").absolute(), neck_study())
@@ -357,7 +357,7 @@ def require_room(path: Path, study: Study) -> None:
 
 
 def file_size(study: Study) -> int:
-    """Size of a study's results file [B] at most, reasons of failures aside.
+    """Largest size of a study's results file [B], without reasons of failures.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> file_size(neck_study(2_000_000)) - file_size(neck_study(1_000_000))
@@ -380,7 +380,7 @@ def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
 
 
 def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
-    """How the study that a results file belongs to differs from this one, in pieces of `size` designs.
+    """Differences between the study of a results file and this one, in pieces of `size` designs.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study

@@ -1,4 +1,4 @@
-"""Reports of studies of many designs: one HTML file each that stands alone."""
+"""Reports of studies of many designs: self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _STRONGEST = "The strongest pairs: where lines are not parallel, one variable de
 
 
 def sweep_report(sweep: Sweep) -> str:
-    """A sweep as a page of HTML: distributions first, what was varied, main effects, shares of variance, designs as lines."""
+    """A sweep as an HTML page: distributions first, variables, main effects, shares of variance, designs as lines."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     effects = designs = None
     if found.used:
@@ -52,7 +52,7 @@ def study_head(study: Study, kind: str, said: Headline) -> Head:
 
 
 def _headline(study: Study, results: Results) -> Headline:
-    """How many designs there are, and how many keep all limits."""
+    """Number of designs, and of feasible ones."""
     count, failed = len(results.designs), len(results.failures)
     said = f"{count} designs of {len(study.variables)} variables" + (f", {failed} of them without values" if failed else "")
     if not study.limits or not count:
@@ -62,7 +62,7 @@ def _headline(study: Study, results: Results) -> Headline:
 
 
 def _parallel(study: Study, found: Effects) -> str:
-    """What the designs over parallel axes show."""
+    """Caption of the designs over parallel axes."""
     text = f"Each line is a design; colour by {found.responses[0]}, from dark where it is least to yellow where it is largest"
     return f"{text}; grey ones do not keep the limits." if study.limits else f"{text}."
 

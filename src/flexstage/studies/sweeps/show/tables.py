@@ -21,7 +21,7 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 
 
 def study_tables(sweep: Sweep) -> list[Table | None]:
-    """What was varied, how the responses are distributed, what does it, and designs that failed."""
+    """Variables, distributions of the responses, variance contributions, and failed designs."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     tables: list[Table | None] = [
         variable_table(study, results),
@@ -33,7 +33,7 @@ def study_tables(sweep: Sweep) -> list[Table | None]:
 
 
 def variable_table(study: Study, results: Results) -> Table:
-    """Variables with their ranges, and how many designs there are."""
+    """Variables with their ranges, and the number of designs."""
     rows = [
         (
             Cell(each.name, Mark.STRONG),
@@ -49,7 +49,7 @@ def variable_table(study: Study, results: Results) -> Table:
 
 
 def limit_notes(study: Study, results: Results) -> list[str]:
-    """How many designs keep all limits; where none does, which are kept by none, or contradict one another."""
+    """Number of feasible designs; without any, the limits that no design meets, or that contradict one another."""
     kept = study.feasible(results.responses)
     if not study.limits or not len(kept):
         return []
@@ -65,7 +65,7 @@ def limit_notes(study: Study, results: Results) -> list[str]:
 
 
 def share_table(found: Effects) -> Table:
-    """First-order and, where known, total indices."""
+    """First-order and, if known, total indices."""
     columns: list[Column | str] = ["variable"]
     for name in found.responses:
         columns += [Column(name, "alone")] + ([] if found.total is None else [Column(name, "in all")])
@@ -82,13 +82,13 @@ def share_table(found: Effects) -> Table:
 
 
 def _error_note(found: Effects, order: int) -> list[str]:
-    """How well indices are known."""
+    """Standard errors of indices."""
     told = [f"{name} {100.0 * error:.1g} %" for name, error in zip(found.responses, found.errors[order], strict=True) if np.isfinite(error)]
     return [f"Standard errors up to: {', '.join(told)}."] if told else []
 
 
 def pair_table(found: Effects) -> Table:
-    """Pairs of variables that explain a hundredth of some response's variance or more beyond each alone, the strongest first."""
+    """Pairs of variables that explain at least a hundredth of a response's variance beyond each alone, the strongest first."""
     known = np.nan_to_num(found.pairs).max(axis=2)
     ranked = sorted(combinations(range(len(found.variables)), 2), key=lambda pair: -known[pair])
     shown_pairs = [pair for pair in ranked if known[pair] >= _LEAST][:_MOST_PAIRS]
@@ -108,7 +108,7 @@ def pair_table(found: Effects) -> Table:
 
 
 def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
-    """A share of a variance in percent, with a bar as long.
+    """A share of a variance in percent, with a bar of that length.
 
     >>> share_cell(0.25).text, share_cell(float("nan")).text
     ('25.0 %', '-')

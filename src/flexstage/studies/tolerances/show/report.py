@@ -1,4 +1,4 @@
-"""Reports of tolerance studies: one HTML file each that stands alone."""
+"""Reports of tolerance studies: self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LIMITS = "Copies by value; black: the design as drawn; red: the limits, and cop
 
 
 def tolerance_report(found: Toleranced) -> str:
-    """A tolerance study as a page of HTML: yields first, what scatters, distributions, contributions, allowances, crosstalk."""
+    """A tolerance study as an HTML page: yields first, scatter, distributions, contributions, allowable tolerances, crosstalk."""
     study, said = found.study, found.summary
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     data = stage_data(study.design)
@@ -38,7 +38,7 @@ def tolerance_report(found: Toleranced) -> str:
 
 
 def _headline(found: Toleranced) -> Headline:
-    """The yield of all lines together, and the line that the fewest copies keep."""
+    """The total yield, and the requirement with the lowest yield."""
     kept = found.summary.together
     if kept is None:
         return Headline(f"{found.summary.copies} copies; no line says what a good one is.")

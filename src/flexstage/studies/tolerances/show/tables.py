@@ -26,7 +26,7 @@ _NO_YIELD = "There is no yield: neither the design's [requirements] nor the stud
 
 
 def tolerance_tables(found: Toleranced) -> list[Table | None]:
-    """What scatters, what the specification says of it, how responses are distributed, what does it, what is allowed, crosstalk."""
+    """Scatter, yield, distributions of responses, variance contributions, allowable tolerances, crosstalk."""
     tables: list[Table | None] = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
     if found.summary.lines:
         tables.append(allowance_table(found))
@@ -35,7 +35,7 @@ def tolerance_tables(found: Toleranced) -> list[Table | None]:
 
 
 def scatter_table(found: Toleranced) -> Table:
-    """What scatters, how far, and in how many numbers."""
+    """Deviations, and the numbers they apply to."""
     rows = [
         (Cell(each.name, Mark.STRONG), ", ".join(each.source), distribution_text(each, each.distribution), _reach_text(each))
         for each in found.study.scatters
@@ -56,7 +56,7 @@ def _reach_text(scatter: Scatter) -> str:
 
 
 def distribution_text(scatter: Scatter, distribution: Distribution) -> str:
-    """A distribution in words: `5 um (sigma), within 10 um`.
+    """A distribution as text: `5 um (sigma), within 10 um`.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> [distribution_text(each, each.distribution) for each in leaf_study().scatters]
@@ -73,7 +73,7 @@ def _size(scatter: Scatter, value: float) -> str:
 
 
 def yield_table(found: Toleranced) -> Table | None:
-    """Each line of the specification, its nominal value and its yield; or that there is none."""
+    """Each requirement, its nominal value and its yield; or the absence of a specification."""
     together, failed = found.summary.together, found.summary.failed
     if together is None:
         return make_table("Yield", [""], [(_NO_YIELD,)])
@@ -110,7 +110,7 @@ def spread_table(found: Toleranced) -> Table:
 
 
 def share_table(found: Toleranced) -> Table:
-    """Which scatter each response's variance is from."""
+    """Variance contributions of the entries to each response."""
     spread, rows, sampled = found.summary.spread, [], False
     for column, name in enumerate(found.study.measures):
         trusted = bool(spread.trusted[column])
@@ -123,7 +123,7 @@ def share_table(found: Toleranced) -> Table:
 
 
 def allowance_table(found: Toleranced) -> Table:
-    """How far each entry may deviate."""
+    """Allowable deviation of each entry."""
     allowed = found.allowance
     rows = [
         (
@@ -183,7 +183,7 @@ def _entry(value: float) -> Cell:
 
 
 def _worst(crosstalk: Crosstalk) -> str:
-    """The worst copies' motion along axes that were not commanded, translations and rotations apart."""
+    """The worst samples' motion along axes without a command, translations and rotations separately."""
     parts = []
     for rows, unit in ((slice(0, 3), "nm"), (slice(3, 6), "nrad")):
         for kind, per in (("", "um"), ("r", "urad")):
