@@ -121,8 +121,8 @@ def test_weight_that_balances_the_preload_leaves_it():
     found = seating(coupling(), lumped(coupling()))["ball0"]
     np.testing.assert_allclose([found.left, found.crush], [1.0, seated(GROOVE, PAIR, np.zeros(6)).pressure / 1.6e9], rtol=1e-9)
     assert np.isnan(found.slip)
-    assert any("slip is not judged" in str(each) for each in defaults(coupling()))
-    assert not any("slip is not judged" in str(each) for each in defaults(coupling(friction=0.2)))
+    assert any("no slip by default" in str(each) for each in defaults(coupling()))
+    assert not any("no slip by default" in str(each) for each in defaults(coupling(friction=0.2)))
 
 
 def test_what_is_left_and_slips_where_nothing_balances_the_preload():
@@ -144,9 +144,9 @@ def test_a_ball_on_a_flat_lifts_off_and_slips_by_its_forces():
 @pytest.mark.parametrize(
     ("stage", "what"),
     [
-        (replace(coupling(), forces={"up": Force("platform", (0.0, 0.0, 0.0), (0.0, 0.0, 60.0))}), "lift the ball off its seat"),
-        (replace(coupling(friction=0.1), forces={"side": Force("platform", (0.0, 0.0, 0.0), (12.0, 0.0, 0.0))}), "make it slip"),
-        (coupling(radius=1e-3), "times that at which the softer material begins to yield"),
+        (replace(coupling(), forces={"up": Force("platform", (0.0, 0.0, 0.0), (0.0, 0.0, 60.0))}), "the ball lifts off its seat"),
+        (replace(coupling(friction=0.1), forces={"side": Force("platform", (0.0, 0.0, 0.0), (12.0, 0.0, 0.0))}), "the ball slips"),
+        (coupling(radius=1e-3), "times the onset of yield in the softer material"),
     ],
 )
 def test_balls_that_leave_their_seats_are_told(stage, what):

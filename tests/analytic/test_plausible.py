@@ -97,7 +97,7 @@ def test_a_load_that_no_part_bears_is_told() -> None:
         bodies={"platform": fs.Body(mass=2000.0, centre=(0.0, 0.0, 0.036), inertia=fs.Inertia(1.0, 1.0, 1.0))},
         links={"pzt": fs.Link(("ground", "platform"), "stack", (0.0, 0.0, 0.018), (0.0, 0.0, 1.0))},
     )
-    assert "9.81 times its maximum load" in {each.where: each.what for each in caveats(stage).warnings}["pzt"]
+    assert "9.81 times the maximum load" in {each.where: each.what for each in caveats(stage).warnings}["pzt"]
 
 
 def test_no_ball_of_osmium_is_doubted() -> None:

@@ -104,8 +104,8 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
     [
         ('"-10 %"', '"10 %"', "its range is empty"),
         ("materials.aluminium.young", "materials.aluminum.young", "aluminium"),
-        ('"frequency.1"', '"frequncy.1"', 'there is no measure called "frequncy.1"'),
-        ('"frequency.1"', '"safety.B"', "there is no measure"),
+        ('"frequency.1"', '"frequncy.1"', 'unknown measure "frequncy.1"'),
+        ('"frequency.1"', '"safety.B"', "unknown measure"),
         ("latin hypercube", "latin", "latin hypercube"),
         ("seed = 3", "sed = 3", "unknown key"),
         ('"10 %"', '"80 GPa"', "one end is relative"),

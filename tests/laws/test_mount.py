@@ -170,7 +170,7 @@ def test_a_value_of_another_file_is_changed_there(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('"fine.toml"', '"fne.toml"', ":5: stages.fine.file: fne.toml: there is no such file"),
+        ('"fine.toml"', '"fne.toml"', ":5: stages.fine.file: fne.toml: file not found"),
         ('"fine.toml"', '"top.toml"', ":5: stages.fine.file: it is this file itself"),
         ('"coarse/platform"', '"coarse/platfrm"', 'stages.fine.on: unknown body "coarse/platfrm". Use coarse/platform'),
         ("fine/left", "fine/lft", 'overrides."fine/lft.thickness"'),

@@ -96,7 +96,7 @@ def test_a_sweep_asks_for_measures_along_a_path(tmp_path: Path):
         (fs.StrokePath("platform.y", ("0 mm", "1 kg")), "kg"),
         (fs.StrokePath("platform.y", ("0 mm", "1 mm"), points=1), "no path"),
         (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "5 N"}), "what drives"),
-        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "0"}), "cannot stay locked"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "0"}), "cannot be a fixed coordinate"),
         (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"gravity": "half"}), '"on" or "off"'),
     ],
 )

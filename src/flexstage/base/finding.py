@@ -8,13 +8,16 @@ A check returns findings; `require` raises them together as one `DesignError`.
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from flexstage.base.renamed import new_name
 
 _SUGGESTIONS = 6
+_VALUE = re.compile(r"got ([0-9][0-9.]*(?:e[+-]?[0-9]+)?)(?=.* or (less|more)\))(.*)", re.DOTALL)
+"""The value of a text that states a bound, and which side of the bound is allowed."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,28 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
         groups.setdefault((place, finding.what, finding.advice), []).append(name)
     wheres = [f"{place}: {', '.join(names)}" if place else ", ".join(names) for (place, _, _), names in groups.items()]
     return tuple(Finding(where, what, advice) for where, (_, what, advice) in zip(wheres, groups, strict=True))
+
+
+def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Warnings that differ in their object and in the value of one bound, as one: the worst, and their number.
+
+    >>> large = [Finding(f"B{each}", f"stress too large (got {each} MPa, expected 1 MPa or less)", "Reduce it") for each in (2, 4, 3)]
+    >>> print(*combine_warnings(large))
+    B4 (worst of 3): stress too large (got 4 MPa, expected 1 MPa or less). Reduce it.
+    """
+    groups: dict[tuple[str, str], list[Finding]] = {}
+    for each in warnings:
+        groups.setdefault((_VALUE.sub(r"\3", each.what), each.advice), []).append(each)
+    return tuple(map(_worst, groups.values()))
+
+
+def _worst(group: Sequence[Finding]) -> Finding:
+    """The finding with the value farthest beyond the bound; of equal texts the first, with the other names."""
+    values = [float(found[1]) * (1.0 if found[2] == "less" else -1.0) for each in group if (found := _VALUE.search(each.what))]
+    if len(group) == 1 or not values:
+        return replace(group[0], where=name_first(list(dict.fromkeys(each.where for each in group)), most=3))
+    worst = group[values.index(max(values))]
+    return replace(worst, where=f"{worst.where} (worst of {len(group)})")
 
 
 def name_first(names: Sequence[str], most: int = 8) -> str:

@@ -22,14 +22,14 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 _SINGULAR = 1e-11
 _ALIKE = 1e-9
-_LOCKED = "this model locks freedoms of the platform: its stiffness is infinite along them"
+_LOCKED = "the model locks degrees of freedom of the platform: infinite stiffness along them"
 
 
 @dataclass(frozen=True, eq=False)
 class DirectionalStiffness:
-    """A symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with its principal values and the angle of the stiffest direction [rad].
+    """Symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with principal values and the angle of the stiffest direction [rad].
 
-    The angle is counted from x towards y, in [0, pi); NaN where all directions are alike to 1e-9.
+    The angle is from x towards y, in [0, pi); NaN for an isotropic tensor (to 1e-9).
     """
 
     TABLE: ClassVar[Layout] = Layout("Principal stiffnesses in the plane", "stiffest softest angle spread", head="other DOFs")
@@ -40,17 +40,17 @@ class DirectionalStiffness:
 
     @property
     def stiffest(self) -> Annotated[Array, INNER, STIFFNESS]:
-        """The larger principal stiffness (...) [N/m]."""
+        """Larger principal stiffness (...) [N/m]."""
         return self.principal[..., 0]
 
     @property
     def softest(self) -> Annotated[Array, INNER, STIFFNESS]:
-        """The smaller principal stiffness (...) [N/m]."""
+        """Smaller principal stiffness (...) [N/m]."""
         return self.principal[..., 1]
 
     @property
     def spread(self) -> Annotated[Array, INNER, SHARE, Heading(digits=3)]:
-        """Their difference, of the larger one (...)."""
+        """Relative difference of the principal stiffnesses (...)."""
         return 1.0 - self.softest / self.stiffest
 
     def along(self, angle: Number) -> Array:
@@ -64,7 +64,7 @@ class Statics(Result):
     """Static behaviour of the platform at a point.
 
     `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor
-    with all other freedoms held, `free` the one with all others free (what a push test measures); `centre` (..., 3) the centre of stiffness
+    with all other degrees of freedom fixed, `free` with all others free (as in a push test). `centre` (..., 3) is the centre of stiffness
     relative to the load point [m].
     """
 
@@ -80,17 +80,17 @@ class Statics(Result):
 
     @property
     def reasons(self) -> Mapping[str, str]:
-        """Why there is no stiffness, where there is none."""
+        """Reasons for a missing stiffness."""
         locked = (("stiffness", "held", "centre"), self.stiffness), (("free",), self.free.tensor)
         return {name: _LOCKED for names, matrix in locked if np.isnan(matrix.values).any() for name in names}
 
 
 @check_arguments
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
-    """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
+    """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
 
-    C = C_read K^-1 C_load^T, strokes held. Small displacements. Where the model leaves the platform fewer than six freedoms (the mapped
-    model of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
+    C = C_read K^-1 C_load^T, strokes fixed. Small displacements. If the model leaves the platform fewer than six degrees of freedom (the
+    mapped model of a guide), the stiffness is infinite along the others: it and the tensors derived from it are NaN (by the first design).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -117,10 +117,10 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
 
 
 class FreedomStiffness(Result):
-    """Stiffness along and about each axis at a point [N/m, N m/rad], strokes held: with the other freedoms free, and with them held.
+    """Stiffness of each degree of freedom at a point [N/m, N m/rad], strokes fixed: with the others free, and with them fixed.
 
-    `motions` are the coordinates of the ideal motions that the stage leaves its platform, `constraints` what its links hold. Free is what
-    a push test at the point measures; it includes that an ideal motion moves the point along another axis too.
+    `motions` are the coordinates of the platform's ideal motions, `constraints` those constrained by its links. The free stiffness is the
+    result of a push test at the point; it includes coupling of an ideal motion into other axes.
     """
 
     point: str
@@ -130,16 +130,16 @@ class FreedomStiffness(Result):
 
     @property
     def reasons(self) -> Mapping[str, str]:
-        """Why entries are null, where there are any."""
+        """Reasons for null entries."""
         return {name: _LOCKED for name in ("motions", "constraints") if np.isnan(getattr(self, name).values).any()}
 
 
 @check_arguments
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
-    """Stiffness by freedom of a stage that leaves its platform fewer than six ideal motions: those left, then those that links hold.
+    """Compute stiffness by degree of freedom for fewer than six ideal motions: along ideal motions, and along constraints.
 
-    The statics are those at a point of the platform. 1 / C_ii with the other freedoms free, K_ii with them held; NaN where the model locks
-    a freedom. None for six ideal motions, of which links hold none, and where the statics are read at another point than is loaded.
+    The statics are at a point of the platform. 1 / C_ii with the other degrees of freedom free, K_ii with them fixed; NaN for a locked one.
+    Returns None for six ideal motions, or for different read-out and load points.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -156,7 +156,7 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
 
 
 def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
-    """Stiffness (..., n, 2) of named freedoms as a table: with the others free, and with them held.
+    """Return a table of stiffness (..., n, 2) by named degree of freedom: with the others free, and with them fixed.
 
     >>> by_freedom(np.ones((2, 2)), ("z", "rx")).unit
     (('N/m', 'N/m'), ('N m/rad', 'N m/rad'))
@@ -166,7 +166,7 @@ def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
 
 
 def _pushed(found: Statics) -> Array:
-    """1 / C_ii (..., 6), NaN along what a model with locked freedoms locks."""
+    """1 / C_ii (..., 6), NaN along locked degrees of freedom."""
     along = np.diagonal(found.compliance.values, axis1=-2, axis2=-1)
     if not np.isnan(found.stiffness.values).any():
         return 1.0 / along
@@ -176,7 +176,7 @@ def _pushed(found: Statics) -> Array:
 
 
 def _inverse(compliance: Array) -> Array:
-    """The stiffness, NaN where a compliance of lower rank has none."""
+    """Inverse of a compliance; NaN for a rank-deficient one."""
     first = np.real(first_design(compliance, 2))
     diagonal = np.diag(first)
     scale = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
@@ -186,7 +186,7 @@ def _inverse(compliance: Array) -> Array:
 
 
 def directional(tensor: Array) -> DirectionalStiffness:
-    """Principal values and axes of an in-plane stiffness tensor (..., 2, 2) [N/m], largest first.
+    """Compute principal values and axes of an in-plane stiffness tensor (..., 2, 2) [N/m], largest first.
 
     >>> directional(np.diag([1.0, 4.0])).principal.tolist()
     [4.0, 1.0]
@@ -203,9 +203,10 @@ def directional(tensor: Array) -> DirectionalStiffness:
 
 
 def centre_of_stiffness(stiffness: Array) -> Array:
-    """Point (..., 3) relative to the reference at which forces and rotations uncouple best: the antisymmetric part of K_tt^-1 K_tr.
+    """Compute the centre of stiffness (..., 3) relative to the reference: the antisymmetric part of K_tt^-1 K_tr.
 
-    With a fully uncoupled centre c, K_tr = -K_tt [c]x (Loncaric 1987 calls the symmetric remainder zero at the centre of stiffness).
+    Forces and rotations uncouple best there. With a fully uncoupled centre c, K_tr = -K_tt [c]x (Loncaric 1987 calls the symmetric
+    remainder zero at the centre of stiffness).
 
     >>> from flexstage.spatial.frame import transport
     >>> carry = transport(np.array([0.0, 0.0, -0.025]))

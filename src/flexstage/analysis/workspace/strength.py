@@ -1,4 +1,4 @@
-"""Stress at every hinge at the worst corner of the strokes, against yield, fatigue or what is allowed."""
+"""Stress at every hinge at the worst corner of the strokes, against yield, fatigue limit or allowable stress."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ from flexstage.parts.profile import single
 class HingeStress(Result):
     """Largest stress in every hinge over the corners of the strokes, (..., L) each.
 
-    `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN where the material states none); `strokes`
-    (..., L, n) [m] at the worst corner. `unchecked` names links without a section to check (stacks, given matrices, restricted parts).
-    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress that the material states (NaN: none; absent: yield
-    stress), `governing` names which of them, on the first design.
+    `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN if unspecified); `strokes` (..., L, n) [m]
+    at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit` [Pa] is
+    the least of yield stress, fatigue limit and allowable stress of the material (NaN: none; absent: yield stress), `governing` names it,
+    on the first design.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Stress in the hinges",
         "table",
         head="hinge",
-        notes=("Von Mises stress at the worst corner of all strokes from no voltage, dead load included; peak: with the notch factor.",),
+        notes=("Von Mises stress at the worst corner of all strokes from zero voltage, with permanent load; peak: with the notch factor.",),
     )
 
     links: tuple[str, ...]
@@ -55,56 +55,56 @@ class HingeStress(Result):
 
     @property
     def allowed(self) -> Annotated[Array, VIEW]:
-        """The stress that counts as the limit (..., L) [Pa]."""
+        """Governing stress limit (..., L) [Pa]."""
         return self.yield_stress if self.limit is None else self.limit
 
     @property
     def safety(self) -> Annotated[Array, INNER, Heading("safety factor", digits=4, mark=SAFETY)]:
-        """The limit over peak stress (..., L); infinite where nothing is stressed."""
+        """The limit over peak stress (..., L); infinite at zero stress."""
         loaded = self.peak != 0.0
         return np.where(loaded | np.isnan(self.allowed), self.allowed / np.where(loaded, self.peak, 1.0), np.inf)
 
     @property
     def min_safety(self) -> Annotated[Array, RATIO]:
-        """The least safety factor of the stage (...); NaN where any hinge's limit is unknown."""
+        """The least safety factor of the stage (...); NaN if any hinge's limit is unknown."""
         return np.min(self.safety, axis=-1)
 
     @property
     def weakest(self) -> Annotated[str, VIEW]:
-        """The link with the least safety factor among those that are known, on the first design."""
+        """Link with the least known safety factor, on the first design."""
         first = np.nan_to_num(self.safety.reshape(-1, len(self.links))[0], nan=np.inf)
         return self.links[int(index_of_largest(1.0 / first))]
 
     @property
     def unknown(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Links whose material states no limit of stress."""
+        """Links without a specified stress limit."""
         gone = np.isnan(np.atleast_2d(self.allowed)).reshape(-1, len(self.links)).any(axis=0)
         return tuple(link for link, missing in zip(self.links, np.asarray(gone), strict=True) if missing)
 
     @property
     def notes(self) -> Annotated[tuple[str, ...], INNER]:
-        """Links that were not checked, and limits other than yield."""
+        """Notes on unchecked links and on limits other than yield."""
         other = (f"{link} {name}" for link, name in zip(self.links, self.governing, strict=False) if name not in ("", "yield stress"))
-        said = {"Not checked": self.unchecked, "Yield stress not stated": self.unknown, "Limits other than yield": tuple(other)}
+        said = {"Not checked": self.unchecked, "Yield stress not specified": self.unknown, "Limits other than yield": tuple(other)}
         return tuple(f"{text}: {', '.join(names)}." for text, names in said.items() if names)
 
     @property
     def worst_strokes(self) -> Annotated[Matrix, VIEW]:
-        """The strokes at which each link is stressed most."""
+        """Strokes at the largest stress of each link."""
         return Matrix(self.strokes, self.links, self.actuators, "m")
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
-        """Rows are the links, columns nominal, peak, yield (where another limit governs, that) and safety."""
+        """Rows are the links, columns nominal, peak, yield (or the governing limit) and safety."""
         values = stack([self.nominal, self.peak, self.allowed, self.safety])
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))
 
 
 def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> HingeStress:
-    """Stress of every hinge from the link wrenches of an elastic model, dead load included.
+    """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
-    `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (its hinges are bent by the bias too), or
-    `stroke_limits(mechanism)` for one that is relaxed at its bias. Linear beam theory, section maxima added (see `beams.stress`).
+    `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (the bias also bends its hinges), or
+    `stroke_limits(mechanism)` for a stage that is stress-free at its bias. Linear beam theory, section maxima added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -136,29 +136,29 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
 
 
 def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
-    """The links of which the stress is known."""
+    """Return the links with a computed stress."""
     return {name: link for name, link in assembly.links.items() if _has_section(link)}
 
 
 def stress_use(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
-    """Largest share of its limit of stress (...) that a link bears under wrenches (..., L, 6); NaN where a limit is not stated."""
+    """Compute the largest ratio of stress to limit (...) over all links under wrenches (..., L, 6); NaN without a limit."""
     return np.max(stress_shares(links, wrenches), axis=-1)
 
 
 def stress_shares(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
-    """Shares of their limits of stress (..., L) that links bear under wrenches (..., L, 6); NaN where a limit is not stated."""
+    """Compute ratios of stress to limit (..., L) of links under wrenches (..., L, 6); NaN without a limit."""
     rows = _rows(list(links.values()), wrenches[None], np.zeros((1, *(1,) * (wrenches.ndim - 2), 0)))
     return stack([row[1] / row[4] for row in rows])
 
 
 def _governing(material: Material | None) -> str:
-    """Which limit of stress is the least on the first design; empty where none is stated."""
+    """Name of the least stress limit on the first design; empty without a limit."""
     limits = {} if material is None else material.limits
     return min(limits, key=lambda name: single(limits[name]), default="")
 
 
 def _has_section(link: PlacedLink) -> bool:
-    """Whether beam theory knows a section and the model the whole wrench (locked freedoms pass forces that no spring feels)."""
+    """Whether the section is known to beam theory and the whole wrench to the model (locked degrees of freedom hide constraint forces)."""
     return not isinstance(link.part, Restricted) and has_section(link.part)
 
 
@@ -166,7 +166,7 @@ _Row: TypeAlias = tuple[Array, Array, Array, Array, Array]
 
 
 def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]:
-    """Nominal and peak stress, yield stress, strokes and least limit of links at their worst corners; those of one part together."""
+    """Nominal and peak stress, yield stress, strokes and least limit of links at their worst corners, grouped by part."""
     groups: dict[tuple[int, int], list[int]] = {}
     for index, link in enumerate(links):
         groups.setdefault((id(link.part), id(link.material)), []).append(index)
@@ -177,7 +177,7 @@ def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]
         peaks = _stress(_real(first.part), first, np.real(own))[1]
         where = np.argmax(peaks, axis=1)[:, None]
         worst = np.take_along_axis(np.broadcast_to(own, (*peaks.shape, 6)), where[..., None], axis=1)
-        nominal, peak = _stress(first.part, first, worst)  # of stepped numbers, derivatives at the worst corner are all that is needed
+        nominal, peak = _stress(first.part, first, worst)  # complex-step derivatives are needed only at the worst corner
         for place, index in enumerate(members):
             strokes = np.take_along_axis(np.broadcast_to(points, (*peaks.shape[1:], points.shape[-1])), where[place][..., None], axis=0)[0]
             limits = (_limit(links[index], name, peak[place, 0]) for name in ("yield_stress", "limit"))

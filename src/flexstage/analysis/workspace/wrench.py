@@ -1,4 +1,4 @@
-"""Stress resultants at the links over a box of strokes, dead load included."""
+"""Stress resultants at the links over a box of strokes, with permanent load."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.spatial.frame import FORCES
 
 
 def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, links: tuple[str, ...]) -> Array:
-    """Wrenches (k, ..., L, 6) [N, N m] at the centres of links, in their frames on the second body, at all k = 2^n corners of the strokes.
+    """Compute wrenches (k, ..., L, 6) [N, N m] on the second body at the centres of links, in their frames, at all k = 2^n stroke corners.
 
     The wrench is linear in the strokes, so convex measures of it (stress, force) are largest at a corner. Weight and forces are included.
 
@@ -33,7 +33,7 @@ def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimi
 
 
 def dead_wrenches(mechanism: Mechanism, model: LinearModel, outputs: tuple[str, ...]) -> Array:
-    """Values (..., p) of outputs under weight and forces, strokes held.
+    """Compute outputs (..., p) under weight and forces, strokes fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

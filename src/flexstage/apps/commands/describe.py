@@ -11,7 +11,7 @@ import typer
 
 from flexstage.analysis.caveats import caveats, model_findings
 from flexstage.apps.words import File
-from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.finding import DesignError, Finding, combine_warnings, refuse, require
 from flexstage.base.storage.document import as_text
 from flexstage.base.text import printable
 from flexstage.base.version import __version__
@@ -33,6 +33,7 @@ from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, find_section, parameter_table
 from flexstage.show.plan import plan_figure
 from flexstage.show.tables.description import composition_table
+from flexstage.show.tables.overview import count_text
 from flexstage.show.viewer.data import still_data
 from flexstage.studies.form import study_schema
 
@@ -113,9 +114,9 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
     show((composition_table(mechanism), *list_caveats("check", mechanism)))
-    count = len(caveats(mechanism).warnings)
-    said = f", {count} warning{'' if count == 1 else 's'}" if count else ""
-    print_result(f"{design}: no findings{said}.")
+    count = len(combine_warnings(caveats(mechanism).warnings))
+    counted = f", {count_text(count, 'warning')}" if count else ""
+    print_result(f"{design}: no errors{counted}.")
 
 
 _SCHEMAS = {File.DESIGN: design_schema, File.STUDY: study_schema, File.LOOP: setup_schema, File.HYSTERESIS: hysteresis_schema}

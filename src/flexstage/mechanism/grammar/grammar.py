@@ -371,7 +371,9 @@ class UnionNode(Node):
             return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
         if not isinstance(name, str) or name not in options:
             advice = advise_kind(kind(name), options)
-            return reader.refuse(join(where, key), f"unknown {key} (got {kind(name)})", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice)
+            return reader.refuse(
+                join(where, key), f"unknown {key} (got {kind(name)})", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice
+            )
         return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:

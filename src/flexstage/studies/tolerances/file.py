@@ -199,7 +199,9 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         try:
             sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
             if not sizes[key] > 0.0:
-                findings.append(Finding(f"{where}.{key}", f"must be greater than 0 (got {show(sizes[key], wanted)})", "Use a positive deviation"))
+                findings.append(
+                    Finding(f"{where}.{key}", f"must be greater than 0 (got {show(sizes[key], wanted)})", "Use a positive deviation")
+                )
         except DesignError as error:
             findings += error.findings
     require(findings)
