@@ -94,7 +94,7 @@ def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.Monk
         at = {name: next(number for number, line in enumerate(notes) if line.startswith(f"{name}: ")) for name in verdicts}
         assert plan < max(at[name] for name in at if name.startswith("hinge")) < at["stage"]
     assert command("verify", "stage.toml", *ROUGH).err.startswith("to do: nothing, ")
-    assert "Which to trust" in ended.out
+    assert "Theory or finite elements" in ended.out
     assert "Theory and finite elements: stage" in ended.out
     assert "Theory and finite elements" in (tmp_path / "v.html").read_text(encoding="utf-8")
 

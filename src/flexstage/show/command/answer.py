@@ -165,7 +165,7 @@ def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ..
             yield "\n".join(f"{title}: {each}" for each in findings)
 
 
-def print_missing(missing: Mapping[str, str], *, forced: bool) -> None:
+def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
     """Print the results not computed and their reasons to stderr, a line for each reason; `forced`: forces drive the stage."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)

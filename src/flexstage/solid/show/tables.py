@@ -121,7 +121,7 @@ def verification_table(rows: tuple[Row, ...]) -> Table | None:
     >>> from flexstage.solid.results.verification import Row
     >>> table = verification_table((Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001),))
     >>> [] if table is None else table.texts()[1]
-    ['mode 1', '101', '100', '0.1 %', '1 %', 'theory will do']
+    ['mode 1', '101', '100', '0.1 %', '1 %', 'theory suffices']
     """
     return result_table(rows, notes=[f"{row.figure}: {row.reason}." for row in rows if row.reason])
 
@@ -140,7 +140,7 @@ def verdict_table_of(found: Verification) -> Table:
         *_stated_note(found.as_stated),
         *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),
     ]
-    return make_table("Which to trust", ["what", "verdict"], rows, notes=notes)
+    return make_table("Theory or finite elements", ["group", "verdict"], rows, notes=notes)
 
 
 def calibration_table(found: Calibration) -> Table:
