@@ -135,4 +135,4 @@ def test_a_link_farther_away_than_any_stage_is_large_is_told() -> None:
     stage = case("parallelogram", {})
     links = {name: replace(link, at=(-27e3, 0.0, 0.0)) if name == "left" else link for name, link in stage.links.items()}
     told = {each.where: each.what for each in caveats(replace(stage, links=links)).warnings if "not plausible" in each.what}
-    assert told["left"].startswith("it stands 2.7e+04 m from the platform")
+    assert told["left"].startswith("distance to the platform not plausible (got 2.7e+04 m")

@@ -309,7 +309,7 @@ def test_bounding_box_and_envelope():
     assert [finding.where for finding in found.findings] == ["envelope.y"]
     assert "84.85 mm" in found.findings[0].what
     assert "80 mm" in found.findings[0].what
-    assert found.findings[0].advice == "Look at platform.s0"  # one that reaches farthest on both sides is named once
+    assert found.findings[0].advice == "Check platform.s0"  # one that reaches farthest on both sides is named once
 
 
 def test_the_linear_map_is_tried_at_corners_and_centres_of_faces():

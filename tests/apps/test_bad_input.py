@@ -43,7 +43,7 @@ BROKEN: dict[str, Broken] = {
     "thicker than wide": (swapped('width = "14.9 mm"', 'width = "0.5 mm"'), ("parts.foot_notch.thickness", "0.85 mm", "0.5 mm")),
     "unconnected body": (
         lambda text: text + '\n[bodies.loose]\nreference = ["0 mm", "0 mm", "0 mm"]\n',
-        ("loose", "no chain of links", "Join it"),
+        ("loose", "not connected to the ground", "Join it"),
     ),
     "misspelt part": (swapped('part = "neck"', 'part = "nek"'), ("nek", "neck")),
     "misspelt body": (swapped('joins = ["tip", "platform"]', 'joins = ["tip", "plattform"]'), ("plattform", "platform")),
@@ -89,7 +89,7 @@ def test_actuators_without_a_path_are_refused(flexstage: Command, tmp_path: Path
     assert len(left) == len(lines) - 1
     design.write_text("\n".join(left))
     for command in ("check", "mapping", "analyse"):
-        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "on no path between ground and platform")
+        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "is not on a path from ground to platform")
 
 
 @pytest.mark.parametrize("joins", ['["tip", "ground"]', '["tip", "base"]'])
@@ -98,12 +98,12 @@ def test_actuators_looped_back_are_refused(flexstage: Command, tmp_path: Path, j
     design = tmp_path / "stage.toml"
     design.write_text(swapped('joins = ["tip", "platform"]', f"joins = {joins}")(design.read_text()))
     for command in ("check", "mapping", "analyse"):
-        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "on no path between ground and platform")
+        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "is not on a path from ground to platform")
 
 
 def test_an_assignment_is_named_once(flexstage: Command) -> None:
     ended = flexstage("modes", "stage.toml", "--set", "neck=2mm")
-    expect_refusal(ended, "--set neck=2mm: it is no single value but holds thickness, profile.", '"neck.thickness=..."')
+    expect_refusal(ended, "--set neck=2mm: it has several values: thickness, profile.", '"neck.thickness=..."')
 
 
 def test_all_findings_are_told_at_once(flexstage: Command, tmp_path: Path) -> None:

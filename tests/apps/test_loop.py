@@ -301,11 +301,11 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--amplitude", "q=1um"), ("--amplitude q=1um", "rx, ry, rz, x, y, z")),
     (("--trajectory", "raster"), ("the stage has no motion y",)),
     (("--trajectory", "sinus"), ("sinus", "sine")),
-    (("--trajectory", "nowhere.csv"), ("nowhere.csv", "no such file")),
+    (("--trajectory", "nowhere.csv"), ("nowhere.csv", "file not found")),
     (("--floor", "VC-Z"), ("--floor VC-Z", "VC-A")),
     (("--feedforward", "everything"), ("--feedforward everything", "lost-motion, load, reference, hysteresis")),
     (("--feedforward", "hysteresis"), ("compensate", "the stacks have none")),
-    (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "file not found")),
     (("--hysteresis", "80 %"), ("--hysteresis", "at most 0.5")),
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
     (
@@ -320,7 +320,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),
     (("--export", "path.csv"), ("--export path.csv", "nothing but the trajectory itself")),
     (("--export", "path.csv", "--tracking", "inverse"), ("--export path.csv", "several paths")),
-    (("--setup", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    (("--setup", "nowhere.toml"), ("nowhere.toml", "file not found")),
     (("--json", "nowhere/loop.json"), ("nowhere/loop.json cannot be written",)),
 )
 

@@ -217,7 +217,7 @@ async def test_a_stage_that_its_load_buckles_is_an_error_though_its_text_is_soun
     await page.ask(say.Edit, text=dumps(upright(500.0)), revision=page.state.revision)
     await page.until(lambda page: page.state.name != "guide" and page.state.problems)
     assert not page.state.sound
-    assert "does not hold" in page.state.problems[0].what
+    assert "position is unstable" in page.state.problems[0].what
     await page.ask(say.Undo)
     await page.settle()
     assert (page.state.sound, page.state.problems) == (True, ())

@@ -180,7 +180,7 @@ def test_formulas_and_values_that_differ_are_told() -> None:
     found = stage()
     parts = dict(found.parts) | {"leaf": replace(found.parts["leaf"], length=0.05)}
     (told,) = check(replace(found, parts=parts))
-    assert str(told).startswith('parts.leaf.length: its formula "arm*1.2" gives 0.0312, and its value is 0.05')
+    assert str(told).startswith('parts.leaf.length: wrong value (got 0.05, expected 0.0312 in SI by its formula "arm*1.2")')
 
 
 def test_a_number_is_not_worked_out_of_itself() -> None:

@@ -210,7 +210,7 @@ def test_beside_its_end_face_a_link_keeps_clear_but_for_a_twentieth_of_a_millime
     """A bead of 0.4 mm on the face that the end stands on: let be up to 0.05 mm, told by what lies beyond that."""
     bead = Block("steel", (height, 0.02, 0.0004), at=(0.01 - 0.5 * height, 0.0, 0.001))
     found = contact_findings(stage({"block": BLOCK, "bead": bead}))
-    assert [finding.what for finding in found] == (["it meets platform beside its end face too, 0.03 mm deep"] if told else [])
+    assert [finding.what for finding in found] == (["it penetrates platform by 0.03 mm outside its end face"] if told else [])
 
 
 def test_what_has_no_outline_is_not_judged() -> None:

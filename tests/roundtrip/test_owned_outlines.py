@@ -121,9 +121,9 @@ def on_platform(body: Body) -> Mechanism:
         ),
         (with_bar(lent(), "bar"), ["bodies.bar.of", '"bar"', "leave it out"]),
         (on_platform(replace(PLATE, of="ground")), ["bodies.platform.of", "moves by itself"]),
-        (lent(solids={}, mass=1.0), ["units.leg.bodies.lug", '"platform"', "states its mass"]),
+        (lent(solids={}, mass=1.0), ["units.leg.bodies.lug", '"platform"', "mass not allowed"]),
         (lent(reference=(0.0, 0.0, 0.0)), ["units.leg.bodies.lug", "states its reference"]),
-        (on_platform(Body(mass=1.0)), ["units.leg.bodies.lug", 'lends solids to "platform"', "states its mass"]),
+        (on_platform(Body(mass=1.0)), ["units.leg.bodies.lug", 'its solids belong to "platform"', "specified mass"]),
         (
             replace(
                 lent(),

@@ -1,4 +1,4 @@
-"""The shipped catalogue: materials, piezo stacks and gauges, each number with its source."""
+"""Shipped catalogue: materials, piezo stacks and gauges, each number with its source."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flexstage.parts.piezo import Piezo
 
 @dataclass(frozen=True)
 class Section:
-    """Entries of one class by name, as tables of a design file under `key`; `kind` tells the class apart where the file needs that."""
+    """Entries of one class by name, as tables of a design file under `key`; `kind` identifies the class if the file requires it."""
 
     key: str
     record: type
@@ -26,24 +26,24 @@ class Section:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Sections of entries that `like` may start from, and the sources that their tags name."""
+    """Catalogue: sections of entries for `like`, and the sources of their tags."""
 
     sections: tuple[Section, ...]
     sources: Mapping[str, str]
 
     def section(self, record: type) -> Section | None:
-        """The section of a class, if there is any."""
+        """Section of a class; `None` if there is none."""
         return next((section for section in self.sections if section.record is record), None)
 
     def sources_of(self, tags: Iterable[str]) -> dict[str, str]:
-        """The sources that tags (`stated key place`) name."""
+        """Sources named in tags (`stated key place`)."""
         keys = {word for tag in tags for word in tag.split()[1:2]}
         return {key: text for key, text in self.sources.items() if key in keys}
 
 
 @functools.cache
 def shipped_catalogue() -> Catalogue:
-    """The catalogue that comes with the package.
+    """Return the catalogue of the package.
 
     >>> "SUS420" in shipped_catalogue().section(Material).entries
     True
@@ -53,7 +53,7 @@ def shipped_catalogue() -> Catalogue:
 
 
 def catalogue_from(raw: Mapping[str, Any]) -> Catalogue:
-    """A catalogue from its tree: tables `materials`, `stacks`, `gauges` and `sources`.
+    """Read a catalogue from its tree: tables `materials`, `stacks`, `gauges` and `sources`.
 
     >>> catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}).section(Material).entries["steel"]["young"]
     '200 GPa'

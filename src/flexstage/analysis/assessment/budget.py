@@ -112,4 +112,4 @@ def _drift(mechanism: Mechanism, model: LinearModel, *, asked: bool) -> tuple[Dr
     except DesignError as error:
         if asked:
             raise
-        return None, {"drift": "; ".join(f"{finding.where} {finding.what}" for finding in error.findings)}
+        return None, {"drift": "; ".join(f"{finding.where}: {finding.what}" for finding in error.findings)}

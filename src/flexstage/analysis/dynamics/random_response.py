@@ -149,9 +149,9 @@ def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]
 
 def _table_findings(name: str, density: Array, frequencies: Array | None) -> list[Finding]:
     wrong = not np.all(np.isfinite(density)) or np.any(density < 0.0) or (frequencies is not None and np.any(density == 0.0))
-    found = [Finding(name, "density negative, not finite, or zero in a table", "Correct the entries")] if wrong else []
+    found = [Finding(name, "its density is negative or not finite, or zero in a table", "Correct the entries")] if wrong else []
     if frequencies is not None and (density.shape != frequencies.shape or np.any(np.diff(frequencies) <= 0.0) or frequencies[0] <= 0.0):
-        found.append(Finding(name, "frequencies must be positive and ascending, one for each density", "Correct the table"))
+        found.append(Finding(name, "its frequencies do not ascend from above 0, or are not as many as the densities", "Correct the table"))
     return found
 
 

@@ -98,7 +98,7 @@ def _check(frequencies: Array) -> Array:
     if grid.ndim != 1 or not np.all(np.isfinite(grid)) or np.any(grid < 0.0):
         raise refuse(
             "frequencies",
-            f"invalid frequencies (got shape {grid.shape}, expected one row of finite, non-negative numbers in Hz)",
+            f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}",
             "Correct the list",
         )
     return grid

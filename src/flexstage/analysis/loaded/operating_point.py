@@ -166,7 +166,7 @@ def coordinate(state: State, name: str) -> Array:
     """
     owner, _, component = name.rpartition(".")
     if component not in COMPONENTS:
-        raise refuse(name, "unknown coordinate", "Use e.g. platform.y")
+        raise refuse(name, "it is no coordinate of this stage", "Use e.g. platform.y")
     return state.twist(owner)[..., COMPONENTS.index(component)]
 
 

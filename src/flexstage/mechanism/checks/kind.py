@@ -1,4 +1,4 @@
-"""Values are of the kind that their field asks for, and the packages that offer kinds are installed."""
+"""Checks of the kinds of values, and of the packages that provide kinds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about values of classes that no register lists: they cannot be written to a file.
+    """Return errors for values of unregistered classes, which files cannot hold.
 
     >>> from flexstage.parts.rod import Rod
     >>> class Wire(Rod): ...
@@ -34,24 +34,24 @@ def _unlisted(node: Node, value: Any, where: str) -> Iterator[Finding]:
 
 
 def package_findings(packages: Iterable[str]) -> Iterator[Finding]:
-    """Findings about packages that a description asks for and that are not installed, or not in the versions asked for.
+    """Return errors for required packages that are missing or of another version.
 
     >>> print(*package_findings(["numpy >= 1", "tapered-leaf >= 1"]))
-    packages: "tapered-leaf >= 1" is not installed. Install it where flexstage is, for example with: pip install "tapered-leaf >= 1".
+    packages: "tapered-leaf >= 1" is not installed. Install it in the environment of flexstage: pip install "tapered-leaf >= 1".
     """
     for text in packages:
-        from packaging.requirements import InvalidRequirement, Requirement  # takes 0.1 s, and few designs name any
+        from packaging.requirements import InvalidRequirement, Requirement  # takes 0.1 s, and few designs have any
 
         try:
             wanted = Requirement(text)
         except InvalidRequirement:
-            yield Finding("packages", f'"{text}" names no package', 'Write its name, and perhaps its versions: "tapered-leaf >= 1"')
+            yield Finding("packages", f'invalid package (got "{text}")', 'Use its name, with optional versions, e.g. "tapered-leaf >= 1"')
             continue
-        install = f'Install it where flexstage is, for example with: pip install "{text}"'
+        install = f'Install it in the environment of flexstage: pip install "{text}"'
         try:
             there = version(wanted.name)
         except PackageNotFoundError:
             yield Finding("packages", f'"{text}" is not installed', install)
             continue
         if not wanted.specifier.contains(there, prereleases=True):
-            yield Finding("packages", f'"{text}" is asked for, and {wanted.name} {there} is installed', install)
+            yield Finding("packages", f'wrong version (got {wanted.name} {there}, expected "{text}")', install)

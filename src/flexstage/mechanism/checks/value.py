@@ -1,4 +1,4 @@
-"""Numbers: finite, within their bounds, batches that fit together."""
+"""Checks of numbers: finite, within bounds, consistent batches."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
 
 LARGEST = 1e40
-"""Numbers beyond it, or nonzero below its reciprocal, in SI: their powers would leave the range of floats, and nothing is made so."""
+"""Largest plausible number in SI (least nonzero: its reciprocal); powers of others exceed the range of floats."""
 
 
 def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about single numbers.
+    """Return errors of single numbers.
 
     >>> from flexstage.parts.rod import Rod
     >>> print(*value_findings(Mechanism("", parts={"wire": Rod("steel", length=0.03, diameter=-0.001)})))
@@ -38,7 +38,7 @@ def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
-    """Where the first failure of a batch is (`" at index 3"`, empty for one design), and the values there.
+    """Return the index of the first failure of a batch (`" at index 3"`, empty for one design), and the values there.
 
     >>> first_failing(np.array([False, True]), np.array([1.0, 2.0]), 3.0)
     (' at index 1', (2.0, 3.0))
@@ -56,7 +56,7 @@ def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
 
 
 def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
-    """What is wrong with a number as a node says it should be.
+    """Return errors of a number with the quantity and bound of its node.
 
     >>> from flexstage.base.units.quantity import FREQUENCY, POSITIVE, RATIO, Bound
     >>> print(*number_findings("rate", 0.0, NumberNode(FREQUENCY, POSITIVE)))

@@ -1,4 +1,4 @@
-"""What the trade calls things, and what they are called here (`synonyms.toml`): for advice where a word of a file is not known."""
+"""Synonyms of kinds and keys (`synonyms.toml`), for hints on unknown words of a file."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from flexstage.base.renamed import new_name
 
 @cache
 def _words() -> dict[str, dict[str, Any]]:
-    """Kinds, keys and remarks by the word that is used here."""
+    """Kinds, keys and remarks by synonym."""
     return tomllib.loads(resources.files("flexstage.mechanism.grammar").joinpath("synonyms.toml").read_text(encoding="utf-8"))
 
 
 def advise_kind(word: str, known: Collection[str]) -> str:
-    """Advice about the word of a kind or shape that is not known: what the trade means by it, else what is near to it.
+    """Return a hint for an unknown kind or shape: by synonym, else the nearest names.
 
     >>> advise_kind("Leaf-Spring", ["leaf", "notch"]), advise_kind("leef", ["leaf", "notch"])
     ('Use leaf', 'Use leaf')
@@ -34,7 +34,7 @@ def advise_kind(word: str, known: Collection[str]) -> str:
 
 
 def advise_key(key: str, unused: Collection[str], known: Collection[str]) -> str:
-    """Advice about a key that is not known: what its symbol stands for, else what is near to it, first of those not yet used.
+    """Return a hint for an unknown key: by symbol, else the nearest names, unused ones first.
 
     >>> advise_key("E", {"young", "density"}, {"young", "density"}), advise_key("thicknes", {"section"}, {"section", "thickness"})
     ('Use young', 'Use thickness')

@@ -1,4 +1,4 @@
-"""From the tree of a file to what it means: every finding is collected before any is raised."""
+"""Decoding of a file's tree: all errors are collected before they are raised."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _Record = TypeVar("_Record")
 
 
 def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
-    """Return the description that a file's tree means; raises `DesignError` with everything that is wrong with it.
+    """Decode a file's tree into a description; raises `DesignError` with all errors.
 
-    Files that it includes, and those of stages that stand on it, are looked for beside the file `where`; `above` are those being read.
+    Included files and files of mounted stages are relative to the folder of the file `where`; `above` are files being read.
 
     >>> mechanism_from({"format": "flexstage 1", "name": "empty"}).name
     'empty'
@@ -52,14 +52,14 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
 
 
 def read_design(text: str, where: str) -> Mechanism:
-    """Return the description that a file's text means, unchecked."""
+    """Decode a file's text into a description, unchecked."""
     return mechanism_from(parse_toml(text, where), where)
 
 
 def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged: bool = True) -> _Record:
-    """Return the record that a tree means whose `format` is to be `form`; raises `DesignError` with everything that is wrong with it.
+    """Decode a tree of `format` `form` into a record; raises `DesignError` with all errors.
 
-    Its fields are annotated as those of descriptions are. `tagged`: its tables may have tags, which are not kept.
+    Its fields are annotated as in descriptions. `tagged`: its tables may have tags, which are dropped.
 
     >>> from flexstage.parts.rod import Rod
     >>> record_from(Rod, {"format": "rod 1", "material": "steel", "length": "3 mm", "diameter": "1 mm"}, "rod 1").length
@@ -86,23 +86,23 @@ def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
         other = isinstance(found, str) and re.fullmatch(r"flexstage( [a-z]+)? \d+", found) and _kind_of(found) != _kind_of(form)
         told = f", a {_kind_of(found)}, expected a {_kind_of(form)}" if other else ""
         reader.refuse("format", f"unknown format (got {kind(found)}{told})", f'Begin a {_kind_of(form)} with format = "{form}"')
-        require(reader.findings)  # what else another kind of file holds says nothing
+        require(reader.findings)  # further errors of another kind of file are irrelevant
 
 
 def _kind_of(form: str) -> str:
-    """What a file of a format is called: "flexstage study 1" is a study file, "flexstage 1" a design file."""
+    """Name of a file format: "flexstage study 1" is a study file, "flexstage 1" a design file."""
     return f"{' '.join(form.split()[1:-1]) or 'design'} file"
 
 
 @dataclass(frozen=True)
 class _Files:
-    """The file that is read, and those whose stages stand on this one."""
+    """The file being read, and files of mounted stages."""
 
     where: str
     above: tuple[Path, ...]
 
     def carried(self, reader: Reader, raw: Any) -> dict[str, tuple[Mount, Mechanism]]:
-        """The stages that a table names, with what their files say."""
+        """Mounted stages of a table, with their descriptions."""
         if not isinstance(raw, dict):
             reader.refuse(STAGES, f"must be a table (got {kind(raw)})", 'Use e.g. fine = { file = "fine.toml" }')
             return {}
@@ -111,12 +111,12 @@ class _Files:
         return {name: (item, stage) for name, (item, stage) in found.items() if stage is not None}
 
     def read(self, reader: Reader, name: str, item: Mount) -> Mechanism | None:
-        """The stage in a file; a finding where that cannot be read, or is being read already."""
+        """The stage in a file; an error if unreadable or circular."""
         path, here = (Path(self.where).parent / item.file).resolve(), Path(self.where).resolve()
         address = f"{STAGES}.{name}.file"
         if path in (here, *self.above):
-            what = "it is this file itself" if path == here else f"{item.file} stands on this stage, and this stage on it"
-            reader.refuse(address, what, "Name the file of another stage")
+            what = "it is this file" if path == here else f"circular reference of this file and {item.file}"
+            reader.refuse(address, what, "Use the file of another stage")
             return None
         try:
             text = read_text(path)
@@ -139,7 +139,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     reader.note(reader.numbers.findings if reader.numbers is not None else ())
     packages = raw.get("packages")
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
-        return reader.note(missing)  # what they offer is not known, which says nothing about the rest
+        return reader.note(missing)  # their kinds are unknown, and so other errors are irrelevant
     raw = _with_likes(reader, raw)
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES)}
     mechanism = reader.read(node_of(Mechanism), body, "")
@@ -164,12 +164,12 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     sources = reader.sources | dict(mechanism.sources)
     tags = {**mechanism.tags, **reader.tags}
     mechanism = replace(mechanism, overrides={**mechanism.overrides, **values}, tags=Table(tags), sources=Table(sources))
-    formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # an override, where it is one by now
+    formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # the address of an override, if it is one
     return replace(mechanism, formulas=Table(formulas))
 
 
 def _with_likes(reader: Reader, raw: dict[str, Any]) -> dict[str, Any]:
-    """The tree with what the catalogue states of entries that are like its own."""
+    """The tree with catalogue entries merged (`like`)."""
     for section in shipped_catalogue().sections:
         table = raw.get(section.key)
         if isinstance(table, dict):
@@ -179,7 +179,7 @@ def _with_likes(reader: Reader, raw: dict[str, Any]) -> dict[str, Any]:
 
 
 def _with_like(reader: Reader, section: Section, where: str, entry: Any) -> Any:
-    """An entry merged over the entry that `like` names. For an unknown one, missing keys are not reported in addition."""
+    """An entry merged over the catalogue entry of `like`. Missing keys of an unknown entry are not reported."""
     own_kind = getattr(section.record, "kind", None)
     if not isinstance(entry, dict) or LIKE not in entry or entry.get("kind", own_kind) != own_kind:
         return entry
@@ -197,7 +197,7 @@ def _with_like(reader: Reader, section: Section, where: str, entry: Any) -> Any:
 def _with_own_values(
     reader: Reader, mechanism: Mechanism, raw: dict[str, Any], included: frozenset[str]
 ) -> tuple[Mechanism, dict[str, Any]]:
-    """The description with the values that its overrides state of included entries, and the other overrides."""
+    """The description with overrides of included entries applied, and the other overrides."""
     rest: dict[str, Any] = {}
     for address, value in raw.items():
         if not _is_of(mechanism, address, included):
@@ -214,7 +214,7 @@ def _with_own_values(
 
 
 def _is_of(mechanism: Mechanism, address: str, entries: frozenset[str]) -> bool:
-    """Whether an address is of a value of one of these entries itself."""
+    """Whether an address is of a value of one of these entries."""
     try:
         place = locate(mechanism, address)
     except DesignError:
@@ -223,7 +223,7 @@ def _is_of(mechanism: Mechanism, address: str, entries: frozenset[str]) -> bool:
 
 
 def _tags_above(raw: dict[str, Any]) -> dict[str, str]:
-    """The tags that stand above all tables."""
+    """Tags above all tables."""
     tags = raw.get(TAGS)
     return {key: tag for key, tag in tags.items() if isinstance(tag, str)} if isinstance(tags, dict) else {}
 
@@ -233,7 +233,7 @@ def _overrides(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dic
     for address, value in raw.items():
         where = f'overrides."{short(address)}"'
         if address == TAGS:
-            reader.refuse(where, "this is no address", "Tags of overrides stand in [tags], by address")
+            reader.refuse(where, "not an address", "Use [tags] for tags of overrides, by address")
             continue
         try:
             values[address] = reader.read(locate(mechanism, address).node, value, where)

@@ -1,4 +1,4 @@
-"""Files at the border: read with a guard on size and form."""
+"""File input with checks of size and form."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.storage.files import require_regular
 
 FORMAT = "flexstage 1"
-"""What a design file says of its form."""
+"""Format of a design file."""
 LARGEST = 5_000_000
-"""Bytes of the largest file that is read: a thousand times a usual design."""
+"""Size limit of a file [bytes]: a thousand times a usual design."""
 LONGEST_LINE = 4_000
 _LEAST, _MOST = -(2**63), 2**63 - 1
 _OPEN_STREAMS = ("/dev/stdin", "/dev/fd/")
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """Return the text of a design file; raises `DesignError` if it is missing, no regular file, too large or not UTF-8.
+    """Read the text of a design file; raises `DesignError` if missing, not a regular file, too large or not UTF-8.
 
     Open streams of a shell (`/dev/stdin`, `/dev/fd/63`) are read too; opening a named pipe could wait for ever.
 
@@ -52,7 +52,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """Return the tree of a TOML text; raises `DesignError` with line and column if it is none.
+    """Parse a TOML text; raises `DesignError` with line and column if invalid.
 
     >>> parse_toml('name = "a"', "stage.toml")
     {'name': 'a'}
@@ -75,7 +75,7 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
 
 
 def _vast(value: Any, where: str) -> Iterator[str]:
-    """Keys of whole numbers beyond the 64 bits that TOML promises."""
+    """Keys of whole numbers beyond the 64 bits of TOML."""
     if isinstance(value, int) and not _LEAST <= value <= _MOST:
         yield where
     members = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
