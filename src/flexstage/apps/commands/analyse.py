@@ -20,7 +20,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import list_caveats, print_missing, show, write_csv, write_workbook
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.failure import MISSED
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Full, Json, ModelName, Report, Xlsx, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
@@ -48,7 +48,7 @@ def analyse(  # noqa: PLR0913 (its options)
     xlsx: Xlsx = None,
     mat: Annotated[Path | None, text_option("--mat", "FILE", "Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.")] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
-    full: Annotated[bool, typer.Option("--full", help="Show the tables of every analysis, not the short form.")] = False,
+    full: Full = False,
 ) -> None:
     """Analyse a stage: everything at once.
 

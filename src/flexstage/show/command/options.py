@@ -129,6 +129,8 @@ STEPS = typer.Option(
 
 Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
 
+Full: TypeAlias = Annotated[bool, typer.Option("--full", help="All tables and notes, instead of the short form.")]
+
 FEA = typer.Option("--fea", help="Finite elements of the stage, computed unless they are in the cache.")
 
 Point: TypeAlias = Annotated[
