@@ -32,6 +32,7 @@ from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.arguments import check_arguments
 from flexstage.base.lazy import Late
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Table
 from flexstage.base.processes.threads import one_thread
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -54,7 +55,7 @@ _UNLUMPED = "this needs the lumped model"
 
 
 @dataclass(frozen=True, eq=False)
-class Analysis:
+class Analysis(InNotebook):
     """All results of one model of a stage; a field without a result is `None`, with the reason in `missing` by field name.
 
     `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform.

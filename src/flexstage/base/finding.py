@@ -11,13 +11,21 @@ import difflib
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from enum import Enum
+from typing import Any, ClassVar
 
 from flexstage.base.renamed import new_name
 
 _SUGGESTIONS = 6
 _VALUE = re.compile(r"got ([0-9][0-9.]*(?:e[+-]?[0-9]+)?)(?=.* or (less|more)\))(.*)", re.DOTALL)
 """The value of a text that states a bound, and which side of the bound is allowed."""
+
+
+class Severity(Enum):
+    """Severity of a finding: an error prevents results, a warning does not."""
+
+    ERROR = "error"
+    WARNING = "warning"
 
 
 @dataclass(frozen=True)
@@ -27,9 +35,17 @@ class Finding:
     where: str
     what: str
     advice: str
+    severity: ClassVar[Severity] = Severity.ERROR
 
     def __str__(self) -> str:
         return f"{self.where}: {self.what}.{f' {self.advice}.' if self.advice else ''}"
+
+
+@dataclass(frozen=True)
+class DesignWarning(Finding):
+    """A doubtful value or result, which prevents nothing."""
+
+    severity = Severity.WARNING
 
 
 class DesignError(ValueError):

@@ -79,14 +79,16 @@ class OptimiseTable:
 class ScatterTable:
     """Scatter: `address`, one or several of a kind (absent: the name), by a standard deviation `normal` or a half width `uniform`.
 
-    Both have a unit or are in percent of the design's value. `within`: samples of a normal one beyond it are rejected.
-    `independent`: each instance has its own deviation.
+    Both with their unit or in percent of the nominal value. `within` truncates a normal distribution. `limits` of an asymmetric
+    tolerance, lower and upper: uniform between them, or with `normal` about their middle and truncated there. `independent`: every
+    instance has its own deviation.
     """
 
     address: Texts | None = None
     normal: Amount | None = None
     uniform: Amount | None = None
     within: Amount | None = None
+    limits: tuple[Amount, Amount] | None = None
     independent: bool = False
 
 

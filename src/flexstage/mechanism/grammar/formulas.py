@@ -245,16 +245,13 @@ def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
 
 
 def spelling_findings(name: str) -> Iterator[Finding]:
-    """Findings about the name of a number: letters, digits and _, and no unit or function.
+    """Findings about the name of a number: letters, digits and _, and no function.
 
-    >>> print(*spelling_findings("t"))
-    numbers.t: t is a unit, so that "2 t" would be ambiguous. Rename the number, e.g. t_1.
+    >>> print(*spelling_findings("sin"))
+    numbers.sin: sin is reserved in formulas. Rename the number, e.g. sin_1.
     """
     if not _NAME.fullmatch(name):
         yield Finding(PREFIX + name[:60], "the name of a number begins with a letter and has letters, digits and _", "Rename it")
-    elif is_unit(name):
-        what = f'{name} is a unit, so that "2 {name}" would be ambiguous'
-        yield Finding(PREFIX + name, what, f"Rename the number, e.g. {name}_1")
     elif name in FUNCTIONS or name.lower() in _NOT_FINITE:
         yield Finding(PREFIX + name, f"{name} is reserved in formulas", f"Rename the number, e.g. {name}_1")
 
