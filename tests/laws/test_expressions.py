@@ -185,7 +185,7 @@ def test_formulas_and_values_that_differ_are_told() -> None:
 
 def test_a_number_is_not_worked_out_of_itself() -> None:
     found = set_text(stage(), "numbers.share", "arm/(1.3 m)")
-    with pytest.raises(DesignError, match="and so of arm itself"):
+    with pytest.raises(DesignError, match="and so on arm"):
         set_text(found, "numbers.arm", "share*1 m")
 
 

@@ -16,7 +16,7 @@ from flexstage.parts.piezo import Piezo
 
 Edges = dict[str, tuple[str, str]]
 
-OTHERS = re.compile(r"(?<=, )\w+")
+OTHERS = re.compile(r"(?:with |, )(\w+)")
 NAMES = (GROUND, PLATFORM, "a", "b", "c", "d", "e")
 STACK = Piezo(stroke=1e-5, stiffness=1e7, length=0.02, diameter=0.005)
 

@@ -344,9 +344,9 @@ def strut(**place):
     ("place", "said"),
     [
         ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.031)}, "got 31 mm, expected the length of part wire, 30 mm"),
-        ({"start": (0.0, 0.0, 0.0)}, "links.strut: it has no to."),
-        ({"at": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.03)}, "it has both at and to"),
-        ({"at": (0.0, 0.0, 0.0)}, 'it has no along. Use e.g. along = "x"'),
+        ({"start": (0.0, 0.0, 0.0)}, "links.strut: to missing."),
+        ({"at": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.03)}, "both at and to specified"),
+        ({"at": (0.0, 0.0, 0.0)}, 'along missing. Use e.g. along = "x"'),
         ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.0)}, "got 0 mm, expected the length of part wire, 30 mm"),
     ],
 )

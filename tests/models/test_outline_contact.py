@@ -190,10 +190,10 @@ def shifted(solid: Solid, *by: float) -> Solid:
 @pytest.mark.parametrize(
     ("by", "said"),
     [
-        ((0.54, 0.0, 0.0), "540 mm away from platform"),
-        ((5e-6, 0.0, 0.0), "0.005 mm away from platform"),
-        ((0.0, 0.05, 0.0), "away from platform"),
-        ((-120e-6, 0.0, 0.0), "runs 0.12 mm into platform"),
+        ((0.54, 0.0, 0.0), "gap of 540 mm"),
+        ((5e-6, 0.0, 0.0), "gap of 0.005 mm"),
+        ((0.0, 0.05, 0.0), "between its end and platform"),
+        ((-120e-6, 0.0, 0.0), "penetrates platform by 0.12 mm"),
         ((0.0, 0.0, 0.0125), "% of its end face lies on platform"),
     ],
 )

@@ -119,10 +119,10 @@ def on_platform(body: Body) -> Mechanism:
             with_bar(replace(lent(), bodies={**lent().bodies, "pad": Body(of="platform")}), "pad"),
             ["bodies.bar.of", '"pad"', '"platform"'],
         ),
-        (with_bar(lent(), "bar"), ["bodies.bar.of", '"bar"', "leave it out"]),
-        (on_platform(replace(PLATE, of="ground")), ["bodies.platform.of", "moves by itself"]),
+        (with_bar(lent(), "bar"), ["bodies.bar.of", '"bar"', "remove it"]),
+        (on_platform(replace(PLATE, of="ground")), ["bodies.platform.of", "cannot be of another body"]),
         (lent(solids={}, mass=1.0), ["units.leg.bodies.lug", '"platform"', "mass not allowed"]),
-        (lent(reference=(0.0, 0.0, 0.0)), ["units.leg.bodies.lug", "states its reference"]),
+        (lent(reference=(0.0, 0.0, 0.0)), ["units.leg.bodies.lug", "reference not allowed"]),
         (on_platform(Body(mass=1.0)), ["units.leg.bodies.lug", 'its solids belong to "platform"', "specified mass"]),
         (
             replace(
@@ -132,7 +132,7 @@ def on_platform(body: Body) -> Mechanism:
             ),
             ["links.l.joins", 'both ends join "platform"'],
         ),
-        (lent(solids={"block": replace(LUG, up=(0.0, 1.0, 1.0), along=(0.0, 1.0, 0.0))}), ["lug.solids.block.up", "45 deg to along"]),
+        (lent(solids={"block": replace(LUG, up=(0.0, 1.0, 1.0), along=(0.0, 1.0, 0.0))}), ["lug.solids.block.up", "got 45 deg"]),
         (lent(solids={"block": replace(LUG, along=(0.0, 0.0, 0.0))}), ["lug.solids.block.along", "zero"]),
         (replace(lent(), payloads={"load": fs.Payload("L1/lug", 1.0, (0.0, 0.0, 0.0))}), ["payloads.load.body", '"L1/lug"']),
     ],

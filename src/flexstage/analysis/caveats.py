@@ -259,7 +259,7 @@ def _far_links(assembly: Assembly) -> Iterator[Finding]:
         distance = float(np.max(np.linalg.norm(np.real(link.frame.position - centre), axis=-1)))
         if distance > _FARTHEST:
             what = f"distance to the platform not plausible (got {distance:.4g} m, expected {_FARTHEST:g} m or less)"
-            yield Finding(name, f"{what}", "Check the unit and the power of ten")
+            yield Finding(name, what, "Check the unit and the power of ten")
 
 
 def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:

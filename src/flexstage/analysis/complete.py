@@ -58,12 +58,12 @@ _UNLUMPED = "this needs the lumped model"
 class Analysis(InNotebook):
     """All results of one model of a stage; a field without a result is `None`, with the reason in `missing` by field name.
 
-    `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform.
-    `deflection` under permanent load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct isolated unit) and
-    the `verdicts` on requirements are by the lumped model. Other models have only the verdicts.
+    `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform. The
+    lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, `units` (each distinct isolated unit) and the
+    `verdicts` on requirements. Other models have only the verdicts.
 
     `loaded` is the effect of the permanent load. If it is significant, statics, modes, responses (`felt`), lost motion, drift, error budget
-    and their verdicts are for the loaded stage; other results and `linear` are nominal. `second_order` is the small-displacement error over
+    and their verdicts are for the loaded stage. Other results and `linear` are nominal. `second_order` is the small-displacement error over
     the required strokes, or the available ones. `ends` has critical load factors at the ends of the paths, up to the required factor; None
     without paths. The error budget is for the required strokes, or all single-axis strokes at once, and one kelvin. `freedoms` (stiffness
     along ideal motions and constraints; None for six ideal motions) and `mass` of the platform belong to the statics.

@@ -90,7 +90,7 @@ def refuse(where: str, what: str, advice: str) -> DesignError:
 
 
 def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Findings that say the same of several objects of one file (`file: name`) as one, which names them all.
+    """Merge equal errors of several objects of one file (`file: name`) into one with all names.
 
     >>> print(*join_findings([Finding("a.csv: S1", "no unit", "State it"), Finding("a.csv: S2", "no unit", "State it")]))
     a.csv: S1, S2: no unit. State it.

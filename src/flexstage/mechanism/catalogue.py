@@ -40,7 +40,7 @@ class Catalogue:
         return next((section for section in self.sections if section.record is record), None)
 
     def extended(self, raw: Mapping[str, Any]) -> Catalogue:
-        """The catalogue with the entries of another one's tree, which take precedence.
+        """Return the catalogue extended by another one's tree, whose entries take precedence.
 
         >>> found = Catalogue((), {}).extended({"materials": {"ours": {"young": "200 GPa"}}})
         >>> list(found.section(Material).entries)
@@ -65,12 +65,12 @@ SECTIONS = (
     Section("coils", "Voice coils", "parts", VoiceCoil, "voice_coil", {}),
     Section("gauges", "Displacement sensors", "sensors", Gauge, None, {}),
 )
-"""The sections of a catalogue, without entries."""
+"""Sections of a catalogue, without entries."""
 
 
 @functools.cache
 def shipped_catalogue() -> Catalogue:
-    """Return the catalogue that comes with the package.
+    """Return the catalogue of the package.
 
     >>> "SUS420" in shipped_catalogue().section(Material).entries
     True

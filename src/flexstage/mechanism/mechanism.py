@@ -66,9 +66,9 @@ class Link(Description):
     """Elastic connection (a part) between two bodies, or between as many bodies as the part has ports.
 
     `joins` names the bodies: the relative twist is of the second body against the first. `part` names an entry of the mechanism's parts.
-    The link frame has its origin at the part's centre `at`, x along `along` (first to second body), and z along `bends` (the axis of
-    compliant rotation, required for parts that are not axisymmetric). `free` overrides the ideal degrees of freedom of the part. The part's
-    two ends may replace `at` and `along`: `start` at the first body, `end` at the second.
+    The link frame has its origin at the part's centre `at` and x along `along` (first to second body). The axis z is along `bends`, the
+    axis of compliant rotation, required for parts that are not axisymmetric. `free` overrides the ideal degrees of freedom of the part. The
+    part's two ends may replace `at` and `along`: `start` at the first body, `end` at the second.
 
     A part with ports (a superelement) joins a body at each port, by name; several ports may join one body. The link frame is then the frame
     of the part's axes. With two ports, `free` are the degrees of freedom of the second port's body against the first's, about its origin.
@@ -128,9 +128,9 @@ class Placement(Description):
 class Probe(Description):
     """Gauges (displacement sensors) of the motion of `body` against `base` along or about the x axis of the pattern's frame.
 
-    The measuring point is the frame's origin. For a gap gauge, x points to its target: the gap opens for target motion along +x, and
-    `positive` is the sign convention of the reading. Other gauges have no `positive`: their reading increases along +x, or with a
-    right-handed rotation about +x.
+    The measuring point is the frame's origin. For a gap gauge, x points to its target: the gap opens for target motion along +x. `positive`
+    is the sign convention of the reading. Other gauges have no `positive`: their reading increases along +x, or with a right-handed
+    rotation about +x.
     """
 
     gauge: str

@@ -38,11 +38,11 @@ def budget(
     """Compute the error budget at a platform point for a box of commands (half widths [m, rad]) and a temperature change [K].
 
     Lost motion and drift (strokes fixed) are by the lumped model, of the loaded stage if its permanent load is significant. Default
-    `drifted`: the ground of the description (`ground_of`). Without a temperature change (0, or `None`: 1 K if drift is known), drift is not
-    required: missing expansion coefficients then omit it, with a note in `reasons`.
+    `drifted`: the ground of the description (`ground_of`). A temperature change of `None` means 1 K if drift is known. With 0 or `None`,
+    missing expansion coefficients omit drift, with a note in `reasons`.
 
-    Lost motion J diag(Lambda) R_a xi, crosstalk J (Lambda - diag) R_a xi with the motion outside the ideal ones; with the gains a = (R_a
-    V^+ T)^-1 R_a xi only the residual T a - V xi remains, as crosstalk. Linear map: finite minus linear kinematics at the corners. Noise:
+    Lost motion J diag(Lambda) R_a xi, crosstalk J (Lambda - diag) R_a xi with the motion outside the ideal ones. With the gains a = (R_a
+    V^+ T)^-1 R_a xi, only the residual T a - V xi remains, as crosstalk. Linear map: finite minus linear kinematics at the corners. Noise:
     `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Stepping actuators: half a step of each
     in the same direction, in a separate column (uniformly distributed, its standard deviation is step/sqrt(12)). Largest absolute values.
 

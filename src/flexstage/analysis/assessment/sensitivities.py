@@ -1,7 +1,7 @@
 """Exact sensitivities of frequencies and gains to every number of a description.
 
-Derivatives of K, M and the gains are by complex step through the models' formulas, one batch axis per parameter; eigenvalue
-derivatives are analytic, d lambda = phi^T (dK - lambda dM) phi.
+Derivatives of K, M and the gains are by complex step through the models' formulas, one batch axis per parameter. Eigenvalue derivatives are
+analytic, d lambda = phi^T (dK - lambda dM) phi.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Sensitivities(Result):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
     `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`
-    lists the groups of modes; `one_sided` gives per cluster the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes, for
-    single parameters (not additive over parameters). `gain` and `loss` (P, n) are those of each actuator; n = 0 if the strokes do not
-    determine the platform. `missing` has the reasons for absent results.
+    lists the groups of modes. `one_sided` has, per cluster, the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes. They
+    are for single parameters (not additive over parameters). `gain` and `loss` (P, n) are those of each actuator; n = 0 if the strokes do
+    not determine the platform. `missing` has the reasons for absent results.
     """
 
     parameters: tuple[str, ...]

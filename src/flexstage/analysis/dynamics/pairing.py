@@ -46,8 +46,8 @@ class Moving:
 def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     """Pair each platform mode, by index, with the most similar mode of another model.
 
-    Modal assurance (Allemang and Brown 1982) weighted by kinetic energy. The common motion outputs, with rotations times the platform's
-    radius of gyration, determine the coordinates of the smaller model by least squares; its inertia is the weight. The share is of each
+    Modal assurance (Allemang and Brown 1982) weighted by kinetic energy. The common motion outputs determine the coordinates of the smaller
+    model by least squares, weighted by its inertia. Rotations are multiplied by the platform's radius of gyration. The share is of each
     mode's total kinetic energy, including motion without an output. Any mode of the other model may be a partner, also local ones. Modes
     closer than 1 % are compared as a subspace, in ascending order. A pair below `RELIABLE` is the best one, but not a match.
 

@@ -40,8 +40,8 @@ class Rate(Enum):
 class Spectrum(CheckedFields):
     """One-sided power spectral density of an input.
 
-    `density` in (unit of the input, with `rate` its rate)^2/Hz: one number (white), or a table (f,) over `frequencies` (f,) in Hz, log-log
-    interpolated, zero outside. Floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    `density` in (unit of the input, with `rate` its rate)^2/Hz: one number (white), or a table (f,) over `frequencies` (f,) in Hz. A table
+    is log-log interpolated and zero outside. Floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array
@@ -108,7 +108,7 @@ def random_response(
 
     `spectra` maps input names (as for `response`; groups not allowed, `ground.z` is floor motion) to one-sided densities; `band` (low,
     high) in Hz, low > 0. Gauss-Legendre integration, 8 nodes per panel. Panels end at multiples of each resonance's half width, at the
-    tables' points and six times a decade, so that the rule resolves every peak (tested against the Lyapunov equation to 1e-8). Raises
+    tables' points and six times a decade. The rule thus resolves every peak (tested against the Lyapunov equation to 1e-8). Raises
     `DesignError` for unknown names, an empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -55,8 +55,8 @@ def transmissibility(
 ) -> Response:
     """Compute the transmissibility (..., f, p, 6): absolute motion of outputs over ground motion, at the platform's reference.
 
-    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b: damping acts on motion relative to the ground, and T of the platform's twist
-    tends to the unit matrix at low frequency. Gauges and stress resultants depend on relative motion only and tend to zero.
+    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. Damping acts on motion relative to the ground. T of the platform's twist tends
+    to the unit matrix at low frequency. Gauges and stress resultants depend on relative motion only and tend to zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

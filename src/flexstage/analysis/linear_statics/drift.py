@@ -1,7 +1,7 @@
 """Thermal drift: motion due to uniform and linear temperature changes, per kelvin.
 
-Every body and part expands freely with the field T(r). A linear field causes no stress in a free body, with the displacement u = alpha [T r
-+ (g . r) r - g r^2 / 2] and the rotation alpha g x r at r from its reference. Incompatible expansion is imposed on the links.
+Every body and part expands freely with the field T(r). A linear field causes no stress in a free body. The displacement is u = alpha [T r +
+(g . r) r - g r^2 / 2] and the rotation alpha g x r at r from its reference. Incompatible expansion is imposed on the links.
 """
 
 from __future__ import annotations

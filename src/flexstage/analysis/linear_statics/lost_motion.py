@@ -65,9 +65,10 @@ class ActuatorLoss:
 class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
-    `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I -
-    transfer; `parasitic` the part of T outside the ideal motions; `budget` every link's and axis' share of each entry of Lambda (with sum
-    Lambda); `correction` the gains a = (R_a V^+ T)^-1 R_a xi; `energy` the strain energy by part per squared unit stroke.
+    `gain` is T = dx/da elastic (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its diagonal,
+    and `loss` is Lambda = I - transfer. `parasitic` is the part of T outside the ideal motions. `budget` has every link's and axis' share
+    of each entry of Lambda (with sum Lambda). `correction` has the gains a = (R_a V^+ T)^-1 R_a xi. `energy` is the strain energy by part
+    per squared unit stroke.
     """
 
     gain: Matrix
@@ -95,10 +96,10 @@ class LostMotion(Result):
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compute lost motion from an elastic model and the ideal kinematics of the same stage.
 
-    Lambda = I - R_a V^+ T. Its budget is exact for any graph: f_e^(i) is link e's force under the platform wrench (R_a V^+)^T e_i with all
-    strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j. By virtual work and reciprocity, Lambda_ij = sum_e f_e^(i) .
-    gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Small
-    motions.
+    Lambda = I - R_a V^+ T. Its budget is exact for any graph. Here f_e^(i) is link e's force under the platform wrench (R_a V^+)^T e_i with
+    zero strokes, and gamma_e^(j) its deformation in the ideal motion of stroke j. By virtual work and reciprocity, Lambda_ij = sum_e
+    f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon).
+    Small motions.
 
     For a model about a displaced state, the ideal motion is that of the nominal position. Its budget requires a model link by link
     (`linearise(state, inner=False)`) and has one more share, `geometric`: geometric stiffness. Raises `DesignError` if the strokes do not

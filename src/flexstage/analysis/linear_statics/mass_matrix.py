@@ -30,7 +30,8 @@ class MassMatrix(Result):
 
     `rigid` (..., 6, 6) is of the isolated `body` of the point with its payloads. `reduced` (..., 6, 6) is of the whole stage: all other
     masses follow quasi-statically, strokes fixed (static condensation, Guyan, AIAA J. 3, 380, 1965). With the stiffness at the same point,
-    it gives natural frequencies never below those of the whole model, and close to them without nearby local modes. `reasons` explain
+    natural
+    frequencies are never below those of the whole model. They are close to them without nearby local modes. `reasons` explain
     unknown masses.
     """
 
@@ -46,10 +47,9 @@ class MassMatrix(Result):
 def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> MassMatrix:
     """Compute the mass matrix (..., 6, 6) of the platform or another body at its reference or a named point [kg, kg m, kg m^2].
 
-    M_rigid = X^T M X with X the transport of twists from the point to the body's reference; M_reduced = S^T M S with the static shapes S =
-    K^-1 C^T (C K^-1 C^T)^-1 of the whole model under unit twists of the point, strokes fixed. Small motions, without free internal modes.
-    `reduced` is None if the point has fewer than six degrees of freedom or its body a free internal mode; `rigid` is None for a body
-    without mass.
+    M_rigid = X^T M X with X the transport of twists from the point to the body's reference. M_reduced = S^T M S with the static shapes S =
+    K^-1 C^T (C K^-1 C^T)^-1 for unit twists of the point, strokes fixed. Small motions, without free internal modes. `reduced` is None for
+    a point with fewer than six degrees of freedom, or a free internal mode of its body. `rigid` is None for a body without mass.
 
     >>> import flexstage as fs
     >>> stage = fs.case("double-triangle")

@@ -63,9 +63,9 @@ class DirectionalStiffness:
 class Statics(Result):
     """Static behaviour of the platform at a point.
 
-    `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor
-    with all other degrees of freedom fixed, `free` with all others free (as in a push test). `centre` (..., 3) is the centre of stiffness
-    relative to the load point [m].
+    `compliance` (..., 6, 6) is from a wrench at `load_point` to the twist at `read_point`, `stiffness` its inverse. `held` is the in-plane
+    tensor with all other degrees of freedom fixed, `free` with all others free (as in a push test). `centre` (..., 3) is the centre of
+    stiffness relative to the load point [m].
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a result of statics", "fs.statics(fs.lumped(stage))")
@@ -90,7 +90,8 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
 
     C = C_read K^-1 C_load^T, strokes fixed. Small displacements. If the model leaves the platform fewer than six degrees of freedom (the
-    mapped model of a guide), the stiffness is infinite along the others: it and the tensors derived from it are NaN (by the first design).
+    mapped model of a guide), the stiffness is infinite along the others. The stiffness and tensors derived from it are then NaN (by the
+    first design).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -37,11 +37,11 @@ _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 class Misaligned(Result):
     """Result for an instance `copy`, misaligned on the ground along (x, y, z) or about (rx, ry, rz) an axis of its frame.
 
-    `along` has a row for each misalignment: the load that forces the instance there, the first frequencies, the largest stress and strain
-    of a flexure, the number of unstable modes (0: stable). `state` has the equilibria. `loads` are the wrenches in all flexures at the
-    largest misalignment, on each end in the frame of its start. `critical` is the misalignment at which the first stiffness vanishes [rad,
-    m]; NaN if none does. `followed` is the misalignment up to which the stage is known to be stable: `critical`, 0.1 rad, 0.1 of the
-    longest flexure, or the end of the path. Stable states beyond `critical` belong to another branch: they have no numbers.
+    `along` has a row for each misalignment, with the load that forces the instance there and the first frequencies. Further columns are the
+    largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` has the equilibria. `loads` are the
+    wrenches in all flexures at the largest misalignment, on each end in the frame of its start. `critical` is the misalignment at which the
+    first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment known to be stable: `critical`, 0.1 rad, 0.1
+    of the longest flexure, or the end of the path. Stable states beyond `critical` belong to another branch: they have no numbers.
     """
 
     copy: str
@@ -85,9 +85,9 @@ class Misalignments(Result):
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
     """Compute internal loads of an instance or link forced into a misaligned seat on the ground, at large displacements, with weight.
 
-    The seat joins the instance's links to the ground. It moves by `size` [m, rad] along or about an axis of the instance's frame, about its
-    origin (of a link: its middle), in `points` steps from zero. Motions that are not over-constrained stay free. Raises `DesignError` for
-    unknown names and for instances that do not join the ground.
+    The seat joins the instance's links to the ground. It moves by `size` [m, rad] along or about an axis of the instance's frame, in
+    `points` steps from zero. The centre of rotation is the frame's origin (of a link: its middle). Motions that are not over-constrained
+    stay free. Raises `DesignError` for unknown names and for instances that do not join the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = misalign(parallelogram(), "left", "ry", 1e-3, points=3)

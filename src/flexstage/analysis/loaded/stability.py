@@ -1,8 +1,8 @@
 """Stability of a whole stage: linearised buckling load factors in the nominal position.
 
-Linearised buckling of the drawn stage, (K + lambda K_g) x = 0. K_g is the second variation of the energy about the loaded stage: of every
-part under the wrench it carries (`beams.geometric`), and of every rigid body, whose forces act at points that turn with it. With F at r
-from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum F r^T.
+Linearised buckling of the drawn stage, (K + lambda K_g) x = 0. K_g is the second variation of the energy about the loaded stage. It has
+terms of every part under the wrench it carries (`beams.geometric`)and of every rigid body with forces at points that rotate with it.
+With F at r from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum F r^T.
 """
 
 from __future__ import annotations

@@ -37,10 +37,10 @@ _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 class Stroke(Result):
     """Characteristics of a stage over the stroke of a `drive`: a row of `along` for each point.
 
-    Columns: the drive's value; its holding force and stiffness, if the drive is a coordinate; the platform's displacement and rotation
-    vector; the relative lost motion `lost` of a stack's stroke; the platform's first natural frequencies, free under that force; the
-    largest stress and strain of a flexure; the number of unstable modes (0: stable). Drive and displacements are relative to `sag`, the
-    static deflection under weight and loads; None if they are relative to the nominal position.
+    Columns: the drive's value, its holding force and stiffness (of a coordinate), and the platform's displacement and rotation vector.
+    `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies, free under that
+    force, the largest stress and strain of a flexure, and the number of unstable modes (0: stable). Drive and displacements are relative to
+    `sag`, the static deflection under weight and loads; None if they are relative to the nominal position.
     """
 
     drive: str
@@ -69,8 +69,8 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
     """Compute the characteristics over a stroke, point by point (docs/nonlinear.md, 25 to 28).
 
     Frequencies are NaN if the free stage is unstable. Loads and weight are those of the path. The drive and displacements are relative to
-    `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a: of
-    the platform's displacement and rotation vector t and the stroke a, R_a and V in the nominal position (`lost_motion`).
+    `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a. The
+    platform's displacement and rotation vector is t, the stroke a; R_a and V are of the nominal position (`lost_motion`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path

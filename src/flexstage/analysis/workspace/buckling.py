@@ -89,7 +89,8 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     """Compute Euler loads of slender parts against their compression over the corners of the strokes and permanent load.
 
     Slender parts are leaves, rods, notches, necks and stacks. P = pi^2 E I / L_e^2 with the least second moment of the thinnest section
-    over the whole length, so hinges are underestimated; or the torsional buckling load, if the section law specifies a lower one.
+    over the whole length, so hinges are underestimated. A lower
+    torsional buckling load of the section law takes precedence.
 
     The factor of the whole stage uses the actual end conditions. Compressions below 1e-9 of the largest force in any part are rounding, and
     count as zero.

@@ -36,8 +36,8 @@ class Intrusion:
 class Clearance(Result):
     """Clearance of the stage: its bounding box, envelope and clear aperture.
 
-    `intrusions` into the `opening` (..., 2) [m], empty without an aperture; `low` and `high` corners (..., 3) [m] of the bounding box;
-    `envelope` (..., 3) [m] or `None`; `extreme` names the outermost outlines (low x, y, z, high x, y, z; first design).
+    `intrusions` are into the `opening` (..., 2) [m], empty without an aperture. `low` and `high` are corners (..., 3) [m] of the bounding
+    box, `envelope` is (..., 3) [m] or `None`. `extreme` names the outermost outlines (low x, y, z, high x, y, z; first design).
     """
 
     TABLE: ClassVar[Layout] = Layout("Clearance", "table reached_by", head="axis")

@@ -40,9 +40,9 @@ class ForceWorkspace(Result):
     """Force workspace: elastic travel of a point along single coordinates, in both directions.
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. The other ideal
-    coordinates are zero if `alone`, else free. `bounds` (coordinates x causes) [m, rad] is the continuous motion limit by cause, `short`
-    the limit in short use (a coil's `duty`); NaN without a specified limit. `current`, `voltage`, `power` and `rise` (coordinates x coils)
-    are required to hold the motion: i, R i, i^2 R and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions without an input.
+    coordinates are zero if `alone`, else free. `bounds` (coordinates x causes) [m, rad] are the continuous motion limits by cause, `short`
+    the limits in short use (a coil's `duty`). They are NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils)
+    hold the motion: i, R i, i^2 R and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions without an input.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -105,12 +105,13 @@ def _least(bounds: Array) -> Array:
 def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceWorkspace:
     """Compute the force workspace: limits over compliance along every ideal motion, for stages with force actuators.
 
-    C = dx/du (elastic, strokes and forces) gives the inputs per motion G: C^-1 for as many inputs as motions, the least-norm inverse
-    relative to input limits for more. Limits of the motion: each coil's peak and continuous current, heat i^2 R over its thermal
-    resistance, static amplifier voltage R i, largest force, magnetic travel, each stroke, the nearer side of each stop, and yield in a
-    hinge under permanent load. Linear. An input moves a coordinate if its effect exceeds 1e-9 of (c E)^1/2, the Cauchy-Schwarz bound with
-    the coordinate's compliance c and twice the input's energy E. Raises `DesignError` without a force actuator, ideal motion, or motion
-    with an input.
+    C = dx/du (elastic, strokes and forces) gives the inputs per motion G. It is C^-1 for as many inputs as motions, for more the least-norm
+    inverse relative to input limits. Coils limit the motion by peak and continuous current, heat i^2 R over thermal resistance, static
+    amplifier voltage R i, largest force and magnetic travel. Other limits are strokes, the nearer side of each stop, and yield in a hinge
+    under permanent load. Linear.
+
+    An input moves a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the coordinate
+    and E twice the energy of the input. Raises `DesignError` without a force actuator, an ideal motion, or a motion with an input.
     """
     if not kinematics.thrusts or not kinematics.mobility:
         raise refuse("force_workspace", "no force actuator moves the stage", "Use the workspace of its strokes")

@@ -66,9 +66,9 @@ class GaugeRange(Result):
 class PoseResolution(Result):
     """Pose resolution: platform motion for one resolution step of every gauge, by S = V (R_s V)^+, (..., 6) [m, rad].
 
-    S is by single gauges, also for those in sums; `gauge_steps` and `gauge_noise` (..., g) [m, rad] are their resolution and noise.
-    `worst`: all gauges off by one step with the worst signs, sum |S_ij| r_j; `rms`: independent steps, (sum S_ij^2 r_j^2)^(1/2); `noise`:
-    rms of the specified noise densities over the gauges' bandwidths (NaN if unspecified).
+    S is by single gauges, also for those in sums; `gauge_steps` and `gauge_noise` (..., g) [m, rad] are their resolution and noise. `worst`
+    is for one step of all gauges with the worst signs, sum |S_ij| r_j; `rms` for independent steps, (sum S_ij^2 r_j^2)^(1/2). `noise` is
+    the rms of the specified noise densities over the gauges' bandwidths (NaN if unspecified).
     """
 
     TABLE: ClassVar[Layout] = Layout(

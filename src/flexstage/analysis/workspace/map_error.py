@@ -27,8 +27,9 @@ _ROUNDING = 64.0 * float(np.finfo(float).eps)
 class MapError(Result):
     """Error of the linear map: finite pose minus J a.
 
-    `strokes` (k, ..., n) [m] with `errors` (k, ..., 6) [m, rad]; `worst` (..., 6) the largest by axis, at `worst_strokes` (..., 6, n): 0
-    and the first strokes if the error is rounding. `residual` (...) [m] is the largest constraint residual of redundant constraints.
+    `strokes` (k, ..., n) [m] have `errors` (k, ..., 6) [m, rad]. `worst` (..., 6) is the largest by axis, at `worst_strokes` (..., 6, n).
+    For rounding errors, these are 0 and the first strokes. `residual` (...) [m] is the largest constraint residual of redundant
+    constraints.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -94,8 +94,8 @@ class SmallMotion:
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
         """Largest theta^2 / 2 of a rotation, or of a deflection over a length, over a box of commands (half widths).
 
-        Foreshortening of a leaf or rod of length L: 3 u^2 / (5 L) + L theta^2 / 24, for an end deflection u relative to its middle and an
-        end rotation theta.
+        The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. Here u is the end deflection relative to the
+        middle, theta the rotation between the ends.
         """
         turned, bent = self._moved(command)
         worst = int(np.argmax(np.round(np.maximum(turned, bent), 12)))

@@ -31,8 +31,8 @@ class HingeStress(Result):
 
     `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN if unspecified); `strokes` (..., L, n) [m]
     at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit` [Pa] is
-    the least of yield stress, fatigue limit and allowable stress of the material (NaN: none; absent: yield stress), `governing` names it,
-    on the first design.
+    the least of yield stress, fatigue limit and allowable stress (NaN: none; absent: yield stress). `governing` names it, on the first
+    design.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -14,7 +14,7 @@ from flexstage.spatial.frame import FORCES
 
 
 def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, links: tuple[str, ...]) -> Array:
-    """Compute wrenches (k, ..., L, 6) [N, N m] on the second body at the centres of links, in their frames, at all k = 2^n stroke corners.
+    """Compute link wrenches (k, ..., L, 6) [N, N m] at all k = 2^n stroke corners, on the second body, in the frame at the link's centre.
 
     The wrench is linear in the strokes, so convex measures of it (stress, force) are largest at a corner. Weight and forces are included.
 

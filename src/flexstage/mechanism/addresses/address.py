@@ -95,7 +95,7 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
 def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
     """Return the mechanism with a text applied at an address: a value, a relative change of a number (`+10%`), or a formula.
 
-    A percentage with a sign is a relative change of any number, also of a ratio; without a sign it is the value of a ratio.
+    A percentage with a sign is a relative change of any number. Without a sign it is the value of a ratio.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, numbers={"arm": NamedNumber(0.026, "mm")})

@@ -25,8 +25,8 @@ _TOPOLOGY = ("joins", "part")
 class Place:
     """Target of an address.
 
-    `path` is the full path from the description, with empty `owners`. For an override, `owners` are the units and instances with valid
-    overrides, by rising precedence (`horizontal/front`, `B2/front`), and `path` begins at the link (`at.x`, `in_link`) or its part. For a
+    `path` is the full path from the description, with empty `owners`. For an override, `owners` are the units and instances with overrides,
+    by rising precedence (`horizontal/front`, `B2/front`). Then `path` begins at the link (`at.x`, `in_link`) or its part. For a
     misalignment (`shift.x`), `owners` is an instance or a gauge.
     """
 

@@ -332,7 +332,7 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Return errors for links without a position, or with two.
 
     >>> print(*place_findings(Mechanism("", links={"strut": Link(("ground", "platform"), "wire", end=(0.0, 0.0, 0.1))})))
-    links.strut: from missing. Specify both from and to, or at and along.
+    links.strut: from missing. Give both from and to, or at and along.
     """
     for where, link in every_link(mechanism):
         ends, place = {"from": link.start, "to": link.end}, {"at": link.at, "along": link.along}

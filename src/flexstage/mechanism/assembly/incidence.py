@@ -115,9 +115,7 @@ def require_room(assembly: Assembly, matrices: float) -> None:
 
     def fits(there: float) -> str:
         most = int(np.sqrt(there / needed) * bodies)
-        return (
-            f"Use at most about {most:,} bodies with as many links each; join bodies without relative motion, or analyse parts of the stage"
-        )
+        return f"About {most:,} bodies with as many links each fit; join bodies without relative motion, or analyse parts of the stage"
 
     require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, fits)
 

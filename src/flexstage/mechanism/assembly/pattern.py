@@ -53,10 +53,10 @@ class Normal(Enum):
 class Polar(Description):
     """Polar pattern: instances at equal steps on a circle around the stage's z axis.
 
-    `first` is the *position angle* of the first instance, from x towards y; `facing` the direction of each instance's x axis, then rotated
-    by `turn` about z. Each instance's z axis is the stage's z axis (`InstanceOrientation.AXIS`: x up, z inward). `step` is the angle
-    between instances (default: equal division of a full circle). `mirror`: mirror images of all instances in the stage's plane with that
-    normal.
+    `first` is the *position angle* of the first instance, from x towards y; `facing` the direction of each instance's x axis. It is then
+    rotated by `turn` about z. Each instance's z axis is the stage's z axis (`InstanceOrientation.AXIS`: x up, z inward). `step` is the
+    angle between instances (default: equal division of a full circle). `mirror`: mirror images of all instances in the stage's plane with
+    that normal.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]

@@ -29,8 +29,8 @@ __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return all errors of a description; none for a valid one.
 
-    A check is skipped if its assumptions fail: numbers are compared if finite, links oriented if their parts are valid, the graph searched
-    if its names exist, and matrix files read if all else is valid.
+    A check is skipped if its assumptions fail. Numbers are compared if finite, links oriented if their parts are valid. The graph is
+    searched if its names exist; matrix files are read if all else is valid.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
     ['bodies: unknown body "platform". Declare the moving part under bodies.platform.']

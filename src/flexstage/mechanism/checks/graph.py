@@ -95,7 +95,7 @@ def _reach(neighbours: _Neighbours, start: str) -> set[str]:
 def _on_a_path(edges: list[_Edge]) -> set[str]:
     """Links on any simple path between ground and platform.
 
-    They form a biconnected component with a closing edge between the two: depth-first search (Hopcroft and Tarjan 1973), starting with that
+    They form a biconnected component with a closing edge between the two. Depth-first search (Hopcroft and Tarjan 1973) starts with that
     edge, so that its component is the first complete one at the ground.
     """
     ways: dict[str, list[tuple[str, str]]] = {}

@@ -1,7 +1,7 @@
 """Grammar of descriptions: fields of each class, from its annotations.
 
-One tree of nodes per class. The node's class has the behaviour for files, addresses and checks (containers here, single values in `node`),
-so that a field is written once, in its class. The names of alternatives in a file (`kind = "notch"`) are here too.
+One tree of nodes per class. The node's class has the behaviour for files, addresses and checks: containers here, single values in `node`. A
+field is thus written once, in its class. The names of alternatives in a file (`kind = "notch"`) are here too.
 """
 
 from __future__ import annotations
@@ -307,7 +307,7 @@ class RecordNode(Node):
         demand: dict[str, Any] = {"required": required}
         if section is not None:
             names = {"anyOf": [{"enum": list(section.entries)}, {"type": "string"}]}
-            properties |= {LIKE: names | {"description": "the entry of the catalogue to start from"}}
+            properties |= {LIKE: names | {"description": "catalogue entry with default values"}}
             demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
         demand |= {"oneOf": wrapped} if wrapped else {}
         shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}

@@ -1,6 +1,6 @@
 """Grammar nodes of single values: number, vector, direction, matrix, text, choice.
 
-Each node class has the operations: `read` and `write` for files, `schema`, `check` for the kind of a value, `members`, and `parse` for the
+Each node class has the operations `read` and `write` for files, `schema`, `check` for the kind of a value, and `members`. `parse` reads the
 text of an assignment.
 """
 

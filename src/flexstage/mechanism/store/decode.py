@@ -28,7 +28,7 @@ from flexstage.mechanism.store.lines import with_lines
 
 _Record = TypeVar("_Record")
 CATALOGUE = "catalogue"
-"""The key that names a file of the user's own materials, actuators and sensors."""
+"""Key of a file with the user's materials, actuators and sensors."""
 
 
 def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
@@ -189,7 +189,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
 
 
 def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """The entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
+    """Entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
     for key, value in table.items():
         if isinstance(value, dict) and key != TAGS:
             yield from ((f"{key}.{inner}", each) for inner, each in _dotted(value))
@@ -198,7 +198,7 @@ def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _catalogue(name: Any, where: str) -> Catalogue:
-    """The shipped catalogue with the entries of the user's file of that name, from the folder of the design file."""
+    """The shipped catalogue extended by the user's file of that name, from the folder of the design file."""
     if name is None:
         return shipped_catalogue()
     if not isinstance(name, str):
@@ -212,7 +212,7 @@ def _catalogue(name: Any, where: str) -> Catalogue:
 
 
 def _with_likes(reader: Reader, raw: dict[str, Any], catalogue: Catalogue) -> dict[str, Any]:
-    """The tree with the values of the catalogue's entries that its own entries are like."""
+    """The tree with catalogue entries merged (`like`)."""
     for key in dict.fromkeys(section.key for section in catalogue.sections):
         table = raw.get(key)
         if isinstance(table, dict):
@@ -221,7 +221,7 @@ def _with_likes(reader: Reader, raw: dict[str, Any], catalogue: Catalogue) -> di
 
 
 def _section_of(catalogue: Catalogue, key: str, entry: dict[str, Any]) -> Section | None:
-    """The section that an entry of a table may be like: that of its kind; without a kind the one that has the name."""
+    """Section of an entry with `like`: by its kind, or without a kind by the name."""
     sections = [each for each in catalogue.sections if each.key == key]
     if "kind" in entry:
         return next((each for each in sections if each.kind == entry["kind"]), None)
@@ -229,7 +229,7 @@ def _section_of(catalogue: Catalogue, key: str, entry: dict[str, Any]) -> Sectio
 
 
 def _with_like(reader: Reader, catalogue: Catalogue, key: str, name: str, entry: Any) -> Any:
-    """An entry merged over the entry that `like` names. For an unknown one, missing keys are not reported in addition."""
+    """An entry merged over the catalogue entry of `like`. Missing keys of an unknown entry are not reported."""
     if not isinstance(entry, dict) or LIKE not in entry or (section := _section_of(catalogue, key, entry)) is None:
         return entry
     like, known = entry[LIKE], section.entries

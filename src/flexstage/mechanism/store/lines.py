@@ -83,7 +83,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
 
 
 def line_numbers(text: str) -> Mapping[str, int]:
-    r"""Return the line by address of every table heading and of every key at the start of a line; of an array of tables, the first.
+    r"""Return the line of every table heading and of every key at the start of a line, by address; of an array of tables, the first.
 
     >>> dict(line_numbers("rate = 1\n[floor]\nx.y = 2"))
     {'rate': 1, 'floor': 2, 'floor.x.y': 3}
