@@ -76,10 +76,10 @@ def polygon(*corners: str) -> str:
         ('kind = "rod"', 'kind = "cross"', ["parts.wire.kind", "Use cross_hinge"]),
         ('kind = "rod"', 'kind = "vcm"', ["parts.wire.kind", "Use voice_coil"]),
         ('kind = "rod"', 'kind = "PZT stack"', ["parts.wire.kind", "PZT stack", "neck"]),
-        ('like = "SUS420" ', 'like = "SUS420"\nE = "200 GPa" ', ["materials.steel.E", "called young here"]),
-        ('like = "SUS420" ', 'like = "SUS420"\nrho = "7800 kg/m^3" ', ["materials.steel.rho", "called density here"]),
-        ('diameter = "1 mm"', 'd = "1 mm"', ["parts.wire.d:", "called diameter here"]),
-        ('length = "30 mm" ', 'L = "30 mm" ', ["parts.wire.L:", "called length here"]),
+        ('like = "SUS420" ', 'like = "SUS420"\nE = "200 GPa" ', ["materials.steel.E", "Use young"]),
+        ('like = "SUS420" ', 'like = "SUS420"\nrho = "7800 kg/m^3" ', ["materials.steel.rho", "Use density"]),
+        ('diameter = "1 mm"', 'd = "1 mm"', ["parts.wire.d:", "Use diameter"]),
+        ('length = "30 mm" ', 'L = "30 mm" ', ["parts.wire.L:", "Use length"]),
         ('kind = "rod"\n', "", ["parts.wire", "kind missing", "notch"]),
         ('like = "SUS420"', 'like = "SUS430"', ["materials.steel.like", '"SUS430"', "SUS420"]),
         ('part = "wire"', 'part = "wier"', ["units.leg.links.front.part", '"wier"', "wire"]),
@@ -220,7 +220,7 @@ def test_entries_of_a_catalogue_of_ones_own(tmp_path: Path) -> None:
     assert stage.sources["lot"] == "tensile test"
     for name, text, words in (
         ("no.toml", CATALOGUE, "file not found"),
-        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: not a section of entries by name. Use coils."),
+        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: unknown section. Use coils."),
         ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: unknown section"),
         ("lab.toml", CATALOGUE.replace("ours", "theirs"), 'the catalogue has no "ours"'),
         ("lab.toml", CATALOGUE.replace("71.2 GPa", "71.2 N"), "materials.al.young"),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.units.quantity import RATIO, Bound
-from flexstage.base.units.unit import example, parse, show
+from flexstage.base.units.unit import convert, example, parse, show
 from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.grammar.node import NumberNode
@@ -76,7 +77,8 @@ def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Findin
     if bound is not None and np.any(outside := _outside(real, bound)):
         at, (found,) = first_failing(outside, real)
         fits = node.quantity is not RATIO or not _outside(parse(RATIO.example, RATIO), bound)
-        text = bound.text() if node.quantity.shown == "1" else f"{bound.text()} {node.quantity.shown}"
+        limits = replace(bound, **{name: float(convert(getattr(bound, name), node.quantity)) for name in ("low", "high")})
+        text = limits.text() if node.quantity.shown == "1" else f"{limits.text()} {node.quantity.shown}"
         advice = hint if fits else f"Use a number {text}"
         yield Finding(f"{where}{at}", f"must be {text} (got {show(found, node.quantity, digits=6)})", advice)
 
