@@ -101,7 +101,7 @@ def test_what_is_not_stated_is_named():
     with pytest.raises(fs.DesignError) as told:
         expansion(stage)
     assert [finding.where for finding in told.value.findings] == ["materials.steel", "parts.stack"]
-    with pytest.raises(fs.DesignError, match="nearest name is steel"):
+    with pytest.raises(fs.DesignError, match="Use steel"):
         expansion(stage, ground="stele")
 
 

@@ -246,7 +246,7 @@ def test_a_set_up_may_say_what_steers_and_is_refused_by_its_escape(guide: Comman
     )
     ended = guide("loop", "stage.toml", "--setup", "loop.toml")
     assert ended.code == 2
-    assert "x\\u202e\\x1b[31m: this key is not known" in ended.err
+    assert "x\\u202e\\x1b[31m: unknown key" in ended.err
     assert "controller.bandwidth" in ended.err
     assert not {letter for letter in ended.err if unicodedata.category(letter) in ("Cc", "Cf")} - {"\n"}
 
@@ -293,7 +293,7 @@ def test_noise_is_that_of_its_simulation(guide: Command) -> None:
 
 BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--rate", "300 Hz"), ("rate: sampling at 300 Hz", "875.4 Hz", "Sample at")),
-    (("--rate", "5"), ("--rate", "without a unit")),
+    (("--rate", "5"), ("--rate", "unit missing")),
     (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest found with PI", "Ask for")),
     (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
     (("--amplitude", "x=1mm"), ("trajectory x", "beyond the strokes from", "Scale the trajectory")),
@@ -301,11 +301,11 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--amplitude", "q=1um"), ("--amplitude q=1um", "rx, ry, rz, x, y, z")),
     (("--trajectory", "raster"), ("the stage has no motion y",)),
     (("--trajectory", "sinus"), ("sinus", "sine")),
-    (("--trajectory", "nowhere.csv"), ("nowhere.csv", "no such file")),
+    (("--trajectory", "nowhere.csv"), ("nowhere.csv", "file not found")),
     (("--floor", "VC-Z"), ("--floor VC-Z", "VC-A")),
     (("--feedforward", "everything"), ("--feedforward everything", "lost-motion, load, reference, hysteresis")),
     (("--feedforward", "hysteresis"), ("compensate", "the stacks have none")),
-    (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "file not found")),
     (("--hysteresis", "80 %"), ("--hysteresis", "at most 0.5")),
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
     (
@@ -320,7 +320,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),
     (("--export", "path.csv"), ("--export path.csv", "the command equals the trajectory")),
     (("--export", "path.csv", "--tracking", "inverse"), ("--export path.csv", "several paths")),
-    (("--setup", "nowhere.toml"), ("nowhere.toml", "no such file")),
+    (("--setup", "nowhere.toml"), ("nowhere.toml", "file not found")),
     (("--json", "nowhere/loop.json"), ("nowhere/loop.json cannot be written",)),
 )
 
@@ -340,7 +340,7 @@ def test_a_key_by_its_old_name_is_refused_with_the_new_one(guide: Command, tmp_p
     (tmp_path / "loop.toml").write_text(f'format = "{FORMAT}"\nreading = "mapped"\n')
     ended = guide("loop", "stage.toml", "--setup", "loop.toml")
     assert (ended.code, ended.out) == (2, "")
-    assert "loop.toml: line 2: reading: this key is not known here. It is called model here." in ended.err
+    assert "loop.toml:2: reading: unknown key. Use model." in ended.err
 
 
 def test_an_unstable_loop_is_refused_with_what_makes_it_so(guide: Command, tmp_path: Path) -> None:

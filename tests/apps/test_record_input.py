@@ -52,7 +52,7 @@ def refused(ended: Ended, said: str) -> None:
 @pytest.mark.parametrize(
     ("name", "data", "said"),
     [
-        ("missing.uff", None, "missing.uff: there is no such file"),
+        ("missing.uff", None, "missing.uff: file not found"),
         ("folder", None, "folder: it is a folder"),
         ("empty.h5", b"", "empty.h5: it is empty"),
         ("junk.uff", np.random.default_rng(0).bytes(20_000), "junk.uff: it is neither text nor a known form of record"),

@@ -152,7 +152,7 @@ def test_a_stand_in_for_a_part_that_is_gone(command: Command, tmp_path: Path) ->
     fs.dump(replace(stage, parts={**stage.parts, "leaf": leaf}), tmp_path / "lost.toml")
     ended = command("solid", "lost.toml")
     assert ended.code == 2
-    assert 'parts.leaf.replaces: there is no part "gone"' in ended.err
+    assert 'parts.leaf.replaces: unknown part "gone"' in ended.err
 
 
 @pytest.mark.parametrize("words", [("solid", "stage.toml"), ("verify", "stage.toml")])
@@ -221,10 +221,10 @@ def test_an_interruption_ends_with_code_two_and_the_same_command_resumes(tmp_pat
 @pytest.mark.parametrize(
     ("memory", "said"),
     [
-        ("8", '--memory: found "8" without a unit. Write for example "8 GB".'),
+        ("8", '--memory: unit missing (got "8"). Use e.g. "8 GB".'),
         ("0 GB", "--memory: must be a size of memory (got 0 GB)."),
         ("-1 GB", "--memory: must be a size of memory (got -1 GB)."),
-        ("8 mm", '--memory: found "8 mm", a length, where a size of memory is expected.'),
+        ("8 mm", '--memory: must be a size of memory (got "8 mm", a length).'),
     ],
 )
 def test_impossible_memory_is_refused_at_once(command: Command, memory: str, said: str) -> None:

@@ -355,10 +355,10 @@ def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
 
 
 BAD = {
-    'w = { address = "hinge.thickness", normal = "1 um" }': 'there is no "hinge". The nearest name is hinges.',
-    'w = { address = "leaf.thicknes", normal = "1 um" }': "The nearest name is thickness",
-    'w = { address = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
-    'w = { address = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
+    'w = { address = "hinge.thickness", normal = "1 um" }': 'unknown name "hinge". Use hinges.',
+    'w = { address = "leaf.thicknes", normal = "1 um" }': "Use thickness",
+    'w = { address = "leaf.thickness", normal = "-1 um" }': "must be greater than 0",
+    'w = { address = "leaf.thickness", normal = "0 um" }': "must be greater than 0",
     'w = { address = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard",
     'w = { address = "leaf.thickness", normal = "1e308 m" }': "deviations reach inf mm (5 standard deviations)",
     'w = { address = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and must be greater than 0",
@@ -368,7 +368,7 @@ BAD = {
     'w = { address = "leaf.thickness", normal = "1 mrad" }': "mrad",
     'w = { address = "materials.steel.young", normal = "1 %", independent = true }': "is a single number",
     'w = { address = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "different quantities",
-    'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
+    'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "unknown key",
     'w = { address = "stacks.stroke", normal = "1 %" }': "the design has no such part",
     'w = { address = "leaf.thickness", interval = ["5 um", "-1 um"] }': "the lower limit is not below the upper one",
     'w = { address = "leaf.thickness", uniform = "5 um", interval = ["-1 um", "5 um"] }': "limits given twice",

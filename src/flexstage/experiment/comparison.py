@@ -197,7 +197,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     >>> compare(double_triangle(), identify(one_mode_record()))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: y: the stage has no output of this name, ...
+    flexstage.base.finding.DesignError: y: unknown output, ...
     """
     linear = read(mechanism, model)
     require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Compare with lumped or mapped")])
@@ -244,7 +244,7 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
     gauges = [name for name in known if "." not in name]
     require(
-        Finding(channel.name, "the stage has no output of this name, nor of any other of the record", suggest_nearest(channel.name, gauges))
+        Finding(channel.name, "unknown output, nor of any other of the record", suggest_nearest(channel.name, gauges))
         for channel in experiment.outputs
         if not found
     )

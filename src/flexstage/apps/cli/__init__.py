@@ -54,11 +54,11 @@ def run(arguments: Sequence[str]) -> int:
 
 def _run(arguments: list[str]) -> None:
     try:
-        from flexstage.apps.cli.commands import MODELS, application  # the doctor also runs without typer
+        from flexstage.apps.cli.commands import run_application  # the doctor also runs without typer
     except ModuleNotFoundError as error:
         if arguments[:1] != ["doctor"] or (error.name or "").startswith("flexstage"):
             raise
         from flexstage.apps.installation import consult
 
         sys.exit(consult())
-    application()(arguments, prog_name="flexstage", obj=MODELS)
+    sys.exit(run_application(arguments))

@@ -44,6 +44,16 @@ def loop_tables(found: LoopStudy) -> list[Table | None]:
     return [loop_table(found), *_charge_tables(found), *_damping_tables(found), *_controller_tables(found)]
 
 
+def short_tables(found: LoopStudy) -> list[Table | str | None]:
+    """The loop, bandwidth, margins, time responses and positioning noise, without notes; of an unstable loop with the reason."""
+    margins = margin_tables(replace(found, disk_margin=None))
+    parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), noise_table(found)]
+    shown = [replace(each, notes=()) for each in (loop_table(found), *margins, *parts) if each is not None]
+    if not found.stability.stable:
+        shown[0] = loop_table(found)
+    return [*shown, "All tables and notes: --full. With pictures, in one page: --report FILE."]
+
+
 def loop_table(found: LoopStudy) -> Table:
     """Table of the loop and its stability.
 

@@ -107,7 +107,7 @@ def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, 
     amount = None if drive_rms is None else first_that_parses(drive_rms, {"stroke": DISPLACEMENT, "voltage": VOLTAGE})
     if drive_rms is not None and amount is None:
         what = f'no displacement or voltage (got "{drive_rms}")'
-        values.findings.append(Finding("--drive-rms", what, 'Use for example "1 um" or "5 V"'))
+        values.findings.append(Finding("--drive-rms", what, 'Use e.g. "1 um" or "5 V"'))
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(
         **dict([amount] if amount else []),

@@ -206,8 +206,8 @@ def _unknown(name: str, names: Iterable[str], kind: str) -> Finding:
     """The error for a name without a channel or, if all of its components are unknown, for its point."""
     owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in names} - {""}
     if not owner or owner in owners:
-        return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, names))
-    return Finding(owner, "the model has no point of this name", suggest_nearest(owner, owners))
+        return Finding(name, f"unknown {kind}", suggest_nearest(name, names))
+    return Finding(owner, "unknown point", suggest_nearest(owner, owners))
 
 
 def assemble(contributions: Contributions, size: int) -> Array:

@@ -16,7 +16,7 @@ import typer
 from rich.console import Console
 
 from flexstage.analysis.caveats import Caveats, caveats
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, combine_warnings
 from flexstage.base.storage.document import Document, as_text
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
@@ -35,6 +35,8 @@ from flexstage.show.workbook import to_xlsx
 _UNFOLDED = 1000
 _LONGEST = 200
 _HANG = 2
+_MAPPING = "mapping: 0 strokes"
+"""Reason of results that need the mapping of strokes to motions."""
 
 
 @dataclass(frozen=True)
@@ -135,10 +137,10 @@ def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], cs
             return
         announce(f"Wrote {json}")
     if STDOUT in map(str, outputs.values()):
-        for each in (*(() if found.mechanism is None else caveats(found.mechanism).warnings), *found.warnings):
+        for each in combine_warnings((*(() if found.mechanism is None else caveats(found.mechanism).warnings), *found.warnings)):
             print_warning(str(each))
         return
-    show((*list_caveats(kind, found.mechanism, found.warnings), *found.tables()))
+    show((*found.tables(), *list_caveats(kind, found.mechanism, found.warnings)))
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
@@ -164,16 +166,17 @@ def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
     """Warnings about a description (`None`: a record only) and `more` about the result, and default values of this kind of result."""
     found = Caveats() if mechanism is None else caveats(mechanism)
-    for title, findings in (("Warnings", (*found.warnings, *more)), ("Taken by default", found.defaults_of(kind))):
+    for title, findings in (("warning", combine_warnings((*found.warnings, *more))), ("default", found.defaults_of(kind))):
         if findings:
-            yield "\n".join([title, "", *(f"  {each}" for each in findings)])
+            yield "\n".join(f"{title}: {each}" for each in findings)
 
 
-def print_missing(missing: Mapping[str, str]) -> None:
-    """Print the results not computed and their reasons to stderr; a shared reason once."""
+def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
+    """Print the results not computed and their reasons to stderr, a line for each reason; `forced`: forces drive the stage."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
-        print_note(f"not given: {names}: {reason}")
+        text = reason.partition(". ")[0].rstrip(".")
+        print_note(f"not computed for force-driven stages: {names}" if forced and _MAPPING in text else f"not computed: {names} ({text})")
 
 
 def show(shown: Iterable[Table | str | None]) -> None:

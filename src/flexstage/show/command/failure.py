@@ -84,10 +84,8 @@ def _interrupted() -> int:
 
 
 def _bad_input(error: DesignError) -> int:
-    count = len(error.findings)
-    print_note(f"error: {count} finding{'s' * (count > 1)}")
     for finding in error.findings:
-        print_note(f"  {finding}")
+        print_note(f"error: {finding}")
     return BAD_INPUT
 
 

@@ -24,7 +24,7 @@ _DIGITS = 4
 _ROWS = 8
 _LOSS = 3
 """Columns of the table of lost motion up to the loss."""
-_NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them under [requirements] in the design file."
+_NO_REQUIREMENTS = "no requirements. Add a table [requirements] to the design file."
 
 
 def stage_text(analysis: Analysis) -> str:
@@ -88,14 +88,14 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
     >>> [each.title for each in summary_tables(analyse(double_triangle(), Model.IDEAL), explained=True) if isinstance(each, Table)]
     ['Platform']
     """
-    yield load_line(analysis)
-    yield small_line(analysis)
     axes = axis_table(analysis)
     yield axes if explained or axes is None else replace(axes, notes=())
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.modes is None else lowest_mode(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield _strength_text(analysis)
+    yield load_line(analysis)
+    yield small_line(analysis)
 
 
 def axis_table(analysis: Analysis) -> Table | None:
@@ -104,11 +104,11 @@ def axis_table(analysis: Analysis) -> Table | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> axis_table(analyse(double_triangle(), Model.MAPPED)).texts()[3]
-    ['z', '300 um', 'B4', '10.09 N/um', '10 nm']
+    ['z', '+-300 um', 'B4', '10.09 N/um', '10 nm']
     """
     strokes, stiffness, resolution = _strokes(analysis), _stiffness(analysis), _resolution(analysis)
     columns = {
-        "stroke, both ways": {name: text for name, (text, _) in strokes.items()},
+        "stroke": {name: text for name, (text, _) in strokes.items()},
         "limited by": {name: cause for name, (_, cause) in strokes.items()},
         "stiffness": stiffness,
         "resolution": resolution,
@@ -150,7 +150,7 @@ def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     else:
         return {}
     return {
-        name: (NO_VALUE if np.isnan(value) else _shown(value, name, TWIST_UNITS), cause or "no limit stated")
+        name: (NO_VALUE if np.isnan(value) else f"+-{_shown(value, name, TWIST_UNITS)}", cause or "no limit stated")
         for name, value, cause in zip(names, np.real(values), causes, strict=True)
     }
 
@@ -217,10 +217,10 @@ def _strength_text(analysis: Analysis) -> str | None:
     buckling = analysis.buckling if reach is None else reach.buckling
     said: list[str] = []
     if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {number(single(reach.stress.min_safety), 4)} against yield, in {reach.stress.weakest}")
+        said.append(f"Least safety factor against yield: {number(single(reach.stress.min_safety), 4)}, in {reach.stress.weakest}.")
     if buckling is not None:
-        said.append(f"load factor of buckling {number(single(buckling.min_factor), 4)}")
-    return f"Strength: {', '.join(said)}." if said else None
+        said.append(f"Buckling load factor: {number(single(buckling.min_factor), 4)}.")
+    return "\n".join(said) or None
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
@@ -237,7 +237,7 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
         "" if whole else "\n  All tables: --full. With pictures, in one page: --report FILE."
     )
     if not analysis.verdicts:
-        return f"Verdict: {_NOTHING_ASKED}{more}"
+        return f"Verdict: {_NO_REQUIREMENTS}{more}"
     worst = min(analysis.verdicts, key=_rank)
     asked = worst.requirement
     why = worst.reason.rstrip(".") or _cause(analysis, worst)

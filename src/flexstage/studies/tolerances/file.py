@@ -43,7 +43,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
     """
     return loads_tolerance(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
@@ -66,9 +66,7 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     bench = _Reached(design)
     scatters = _scatters(file.scatter, bench, findings)
     if not file.scatter:
-        findings.append(
-            Finding("scatter", "nothing scatters", 'Write for example wire = { address = "hinges.thickness", normal = "5 um" }')
-        )
+        findings.append(Finding("scatter", "nothing scatters", 'Use e.g. wire = { address = "hinges.thickness", normal = "5 um" }'))
     if file.tolerance.copies > _MOST:
         findings.append(Finding("tolerance.copies", f"must be at most {_MOST:.0e} (got {file.tolerance.copies:.3g})", "Use fewer samples"))
     asked = _command(file.tolerance, design, findings)
@@ -205,7 +203,9 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         try:
             sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
             if not sizes[key] > 0.0 and key not in ("interval.0", "interval.1"):
-                findings.append(Finding(f"{where}.{key}", f"found {show(sizes[key], wanted)}", "Give a deviation above 0"))
+                findings.append(
+                    Finding(f"{where}.{key}", f"must be greater than 0 (got {show(sizes[key], wanted)})", "Use a positive deviation")
+                )
         except DesignError as error:
             findings += error.findings
     require(findings)
@@ -214,7 +214,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         return Distribution(shape, sizes[shape.value], sizes.get("within")), relative
     low, high = sizes["interval.0"], sizes["interval.1"]
     if not low < high:
-        raise refuse(f"{where}.interval", "the lower limit is not below the upper one", 'Write for example interval = ["-1 um", "5 um"]')
+        raise refuse(f"{where}.interval", "the lower limit is not below the upper one", 'Use e.g. interval = ["-1 um", "5 um"]')
     half, middle = 0.5 * (high - low), 0.5 * (high + low)
     return Distribution(shape, sizes.get("normal", half), half if shape is Shape.NORMAL else None, middle), relative
 
