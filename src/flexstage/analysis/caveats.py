@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.measures import drift
 from flexstage.analysis.assessment.requirements import requirements
+from flexstage.analysis.linear_statics.body_effect import body_effects, body_findings
 from flexstage.analysis.loaded.course import path_findings
 from flexstage.analysis.loaded.seating import seating, seating_findings
 from flexstage.analysis.loaded.standing import drawn, kinematics, load_factors, standing
@@ -194,6 +195,7 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         *implausible(_catalogue_items(mechanism)),
         *_disproportions(mechanism),
         *_overload_findings(mechanism),
+        *_flexible_bodies(mechanism),
         *_points(mechanism),
         *part_warnings(mechanism),
         *_blockages(mechanism),
@@ -275,6 +277,14 @@ def _overload_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for judged in (_stress_findings, _compression_findings, _seat_findings):
         with suppress(DesignError):
             yield from judged(mechanism, drawn(mechanism))
+
+
+def _flexible_bodies(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Bodies taken as rigid that bend; nothing where the lumped or the ideal model is refused, which tells why."""
+    try:
+        return tuple(body_findings(body_effects(mechanism, drawn(mechanism), kinematics(mechanism))))
+    except DesignError:
+        return ()
 
 
 def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
