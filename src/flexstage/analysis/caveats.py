@@ -22,7 +22,7 @@ from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
-from flexstage.base.finding import DesignError, Finding
+from flexstage.base.finding import DesignError, Finding, name_first
 from flexstage.base.number import stack
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER
@@ -37,6 +37,7 @@ from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.mechanism.geometry.outline import outlines
 from flexstage.mechanism.grammar.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
+from flexstage.models.flexible_bodies import body_flexibilities
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
 from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
@@ -96,6 +97,7 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
         *_sticking(mechanism),
         *_lossless(mechanism),
         *_ground_default(mechanism),
+        *_rigid_bodies(mechanism),
     )
 
 
@@ -169,6 +171,14 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
         yield Default(
             "ground", f"it is taken as {ground.material}: {ground.source}", advice, _LINEAR - {"drift"} | _MEASURED | {"workspace", "loop"}
         )
+
+
+def _rigid_bodies(mechanism: Mechanism) -> Iterator[Default]:
+    """Bodies that are rigid as their flexibility has no estimate, by reason."""
+    reasons = body_flexibilities(mechanism).reasons
+    for reason in dict.fromkeys(reasons.values()):
+        names = name_first([name for name, each in reasons.items() if each == reason])
+        yield Default(names, f"it is taken as rigid, its flexibility is not estimated: {reason}", "Compare with flexstage verify", _STILL)
 
 
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:

@@ -1,6 +1,6 @@
 """Flexibility of bodies, estimated from their outlines: finite cells, condensed to the ends of the links on each body.
 
-Each outline is laid into a rectangular grid of quadratic hexahedra; points of a cell outside the material have next to no stiffness
+Each outline is laid into a rectangular grid of quadratic hexahedra of 20 nodes; points of a cell outside the material have next to no stiffness
 (finite cell method; Parvizian, Duester, Rank, Comput. Mech. 41, 121, 2007). Outlines that meet or overlap are tied together at points of
 their cells. Wrenches at the ends of its links, balanced by the inertia of the accelerated body, give the twists of these ends against the
 body's mean motion (inertia relief). Linear models then hold rigid bodies with a compliance between each body and the ends of its links.
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise, permutations, product
 from typing import Any
 
@@ -18,6 +18,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.number import Array
+from flexstage.base.session import SESSION
 from flexstage.base.storage.digest import digest
 from flexstage.mechanism.assembly.expand import Assembly, PlacedBody, PlacedLink, expand
 from flexstage.mechanism.assembly.incidence import is_single
@@ -32,10 +33,12 @@ from flexstage.spatial.frame import FORCES, Frame, cross_matrix, spatial_rotatio
 
 BODIES = "flexible bodies"
 """The name of what flexible bodies take from the stiffness of a model."""
-_ACROSS, _CUT, _WHOLE = 4, 8, 12
-"""Cells along the longest side of a block, of another outline, whose surface cuts them, and of a whole body, at most."""
-_EMPTY, _VOID = 0.005, 1e-8
+_SLENDER, _COMPACT, _CUT, _WHOLE = 4, 3, 8, 8
+"""Cells along the longest side of a slender and of a compact block, of another outline, whose surface cuts them, and of a whole body."""
+_EMPTY, _VOID = 0.005, 1e-3
 """Share of material below which a cell is left out; stiffness of points outside the material, over that of the material."""
+_MOST = 200
+"""Bodies of a stage above which none is estimated."""
 _FAR = 0.25
 """Distance of a link's end from the outlines, over the body's longest side, above which the body is not estimated."""
 _SOUND = 0.25
@@ -46,10 +49,11 @@ _TIE = 100.0
 """Stiffness of a point tied to another outline, over that of its cell."""
 _GAUSS = 0.577
 """Points of a link's end face, over its half sides."""
-_CORNERS: Array = np.array(list(product(range(3), repeat=3)))
-_STATIONS: Array = (np.array([-2.0, 0.0, 2.0])[:, None] + np.array([-1.0, 1.0]) / math.sqrt(3.0)).ravel() / 3.0
+_CORNERS: Array = np.array([each for each in product(range(3), repeat=3) if each.count(1) < 2])
+"""Nodes of a cell: its corners and the middles of its edges, in half sides from its first corner."""
+_STATIONS: Array = (np.array([-1.0, 1.0])[:, None] + np.array([-1.0, 1.0]) / math.sqrt(3.0)).ravel() / 2.0
 _POINTS: Array = np.array(list(product(_STATIONS, repeat=3)))
-"""Points of a cell that are inside or outside the material: two Gauss points in each third of its sides."""
+"""Points of a cell that are inside or outside the material: two Gauss points in each half of its sides."""
 
 _SAMPLES: Array = np.array(
     [each for each in product((-1.0, -0.577, 0.0, 0.577, 1.0), repeat=3) if sum(abs(part) == 1.0 for part in each) < 2]
@@ -80,6 +84,7 @@ class BodyEstimates:
     reasons: Mapping[str, str]
 
 
+@SESSION.keep(4)
 def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """Estimate the flexibility of every body of one design from its outlines.
 
@@ -93,9 +98,11 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     assembly = expand(mechanism)
     if not is_single(assembly):
         return BodyEstimates((), dict.fromkeys(assembly.bodies, "it is one of several designs"))
+    if len(assembly.bodies) > _MOST:
+        return BodyEstimates((), dict.fromkeys(assembly.bodies, f"the stage has more than {_MOST} bodies"))
     found: list[BodyFlexibility] = []
     reasons: dict[str, str] = {}
-    known: dict[tuple[bytes, ...], Array] = {}
+    known: dict[_Problem, int] = {}
     for name, body in assembly.bodies.items():
         links = [link for link in assembly.links.values() if name in link.joins and np.any(span(link.part))]
         if (reason := _reason(body, links)) is not None:
@@ -195,18 +202,33 @@ def _distance(body: PlacedBody, point: Array) -> float:
     return min(float(np.linalg.norm(np.maximum(np.abs(own) - half, 0.0))) for own, half in boxes)
 
 
-def _estimate(body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[str, Material], known: dict[Any, Array]) -> BodyFlexibility:
-    """The flexibility of a body; that of a body with the same outlines and ends, in its own frame, is `known`."""
+def _estimate(body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[str, Material], known: dict[_Problem, int]) -> BodyFlexibility:
+    """The flexibility of a body; bodies with the same outlines and ends, each in its own frame, are one of the `known` groups."""
     frame = Frame(max(body.solids.values(), key=lambda placed: math.prod(placed.solid.sides)).frame.rotation, body.reference)
     solids = [_Outline.of(placed, frame, materials[placed.solid.material]) for placed in body.solids.values()]
     ends = np.array([_end(link, body.name) for link in links])
     spots = [frame.rotation.T @ (spot - frame.position)[..., None] for spot in (_face(link, body.name) for link in links)]
     faces = np.array(spots)[..., 0]
     key = tuple((np.round(each, 9) + 0.0).tobytes() for each in (*(solid.key for solid in solids), faces))
-    if key not in known:
-        known[key] = _Solid.of(solids).flexibility(faces)
+    problem = _Problem(key, solids, faces)
     turn = np.kron(np.eye(len(links)), spatial_rotation(frame.rotation))
-    return BodyFlexibility(body.name, list(known).index(key), tuple(link.name for link in links), ends, turn @ known[key] @ turn.T)
+    compliance = turn @ _compliance(problem) @ turn.T
+    return BodyFlexibility(body.name, known.setdefault(problem, len(known)), tuple(link.name for link in links), ends, compliance)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Outlines of a body and the faces (k, 9, 3) at the ends of its links, in its own frame; `key` has all their numbers."""
+
+    key: tuple[bytes, ...]
+    outlines: Sequence[_Outline] = field(compare=False)
+    faces: Array = field(compare=False)
+
+
+@SESSION.keep(64)
+def _compliance(problem: _Problem) -> Array:
+    """Compliance (6 k, 6 k) at the ends of links, in the body's frame."""
+    return _Solid.of(problem.outlines).flexibility(problem.faces)
 
 
 def _face(link: PlacedLink, body: str) -> Array:
@@ -248,9 +270,10 @@ class _Outline:
             along = np.abs(np.roll(corners, -1, axis=0) - corners) < _SAME * np.max(half)
             inner[:2] = [corners[along[:, axis], axis].tolist() for axis in range(2)]
         least = 0.5 * float(self.solid.thinnest)
-        step = 2.0 * max(half) / (_ACROSS if isinstance(self.solid, Block) else _CUT)
+        side, thick = 2.0 * float(max(half)), 2.0 * least
+        step = max(side / _SLENDER, min(side / _COMPACT, thick), least) if isinstance(self.solid, Block) else max(side / _CUT, thick)
         faces = [_apart(each, planes, least) for each, planes in zip(half, inner, strict=True)]
-        return [_divided(each, max(step, least if isinstance(self.solid, Block) else 2.0 * least, finest)) for each in faces]
+        return [_divided(each, max(step, finest)) for each in faces]
 
     def contains(self, points: Array, slack: float = 0.0) -> Array:
         """Which points (n, 3) of the body's frame are inside."""
@@ -259,7 +282,7 @@ class _Outline:
     @property
     def key(self) -> Array:
         """Numbers that tell it from others."""
-        return np.array([int(digest(self.solid, physics=True)[:12], 16), *self.rotation.ravel(), *self.place, self.first, self.shear])
+        return np.array([int(digest(self.solid, physics=True)[:12], 16), *self.rotation.ravel(), *self.place, self.first, self.shear, self.density])
 
 
 def _apart(half: float, planes: Iterable[float], least: float) -> Array:
@@ -280,7 +303,7 @@ def _divided(planes: Array, step: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Cells:
-    """Cells of one outline that hold material of it alone: middles and half sizes (c, 3) in its frame, and the nodes (c, 27) of each.
+    """Cells of one outline that hold material of it alone: middles and half sizes (c, 3) in its frame, and the nodes (c, 20) of each.
 
     `material` (c, p) says which points of a cell are inside, `where` (n, 3) places the nodes in the body's frame.
     """
@@ -311,24 +334,25 @@ class _Cells:
         ways = [np.interp(np.arange(count), 2 * np.arange(len(each)), each) for count, each in zip(counts, grid, strict=True)]
         where = np.stack([way[index] for way, index in zip(ways, np.unravel_index(used, counts), strict=True)], axis=1)
         where = where @ outline.rotation.T + outline.place
-        return _Cells(outline, middle[kept], half[kept], begin + numbers.reshape(-1, 27), where, inside[kept])
+        return _Cells(outline, middle[kept], half[kept], begin + numbers.reshape(-1, _NODES), where, inside[kept])
 
     @property
     def stiffness(self) -> Array:
-        """Stiffness (c, 81, 81) of each cell, in the body's axes."""
-        share = np.where(self.material, 1.0, _VOID) * (np.prod(self.half, axis=1) / 27.0)[:, None]
-        pairs = np.einsum("pik,pjl->pklij", _SLOPES, _SLOPES, optimize=True).reshape(len(_POINTS), -1)
-        pairs = (share @ pairs).reshape(-1, 3, 3, 27, 27) / (self.half[:, :, None] * self.half[:, None])[..., None, None]
+        """Stiffness (c, 60, 60) of each cell, in the body's axes; cells of the same size and material share it."""
+        kinds, number = np.unique(np.hstack([np.round(self.half / np.max(self.half), 6), self.material]), axis=0, return_inverse=True)
+        half, inside = np.max(self.half) * kinds[:, :3], kinds[:, 3:]
+        share = np.where(inside, 1.0, _VOID) * (np.prod(half, axis=1) / 8.0)[:, None]
+        pairs = (share @ _pairs()).reshape(-1, 3, 3, _NODES, _NODES) / (half[:, :, None] * half[:, None])[..., None, None]
         whole = self.outline.first * pairs + self.outline.shear * np.swapaxes(pairs, 1, 2)
         whole[:, range(3), range(3)] += self.outline.shear * np.trace(pairs, axis1=1, axis2=2)[:, None]
         turn = self.outline.rotation
-        return np.einsum("xa,cabij,yb->cixjy", turn, whole, turn, optimize=True).reshape(-1, 81, 81)
+        return np.einsum("xa,cabij,yb->cixjy", turn, whole, turn, optimize=True).reshape(-1, 3 * _NODES, 3 * _NODES)[number.ravel()]
 
     @property
     def masses(self) -> Array:
-        """Mass matrix (c, 27, 27) of each cell along one axis."""
-        share = self.outline.density * self.material * (np.prod(self.half, axis=1) / 27.0)[:, None]
-        return (share @ np.einsum("pi,pj->pij", _SHAPES, _SHAPES).reshape(len(_POINTS), -1)).reshape(-1, 27, 27)
+        """Mass matrix (c, 20, 20) of each cell along one axis."""
+        share = self.outline.density * self.material * (np.prod(self.half, axis=1) / 8.0)[:, None]
+        return np.einsum("cp,pi,pj->cij", share, _SHAPES, _SHAPES, optimize=True)
 
     @property
     def samples(self) -> tuple[Array, Array]:
@@ -338,7 +362,7 @@ class _Cells:
         return points, np.repeat(stiffness, len(_SAMPLES))
 
     def shares(self, points: Array) -> tuple[Array, Array, Array]:
-        """Nodes (n, 27) whose motion is that of points (n, 3), with the share of each; distances (n,) from the cells."""
+        """Nodes (n, 20) whose motion is that of points (n, 3), with the share of each; distances (n,) from the cells."""
         own = (points - self.outline.place) @ self.outline.rotation
         full = np.mean(self.material, axis=1)
         sound = np.flatnonzero(full >= min(_SOUND, float(np.max(full))))
@@ -368,12 +392,13 @@ class _Solid:
             cells += [found] if len(found.middle) else []
         where = np.concatenate([each.where for each in cells])
         rigid = np.concatenate([np.broadcast_to(np.eye(3), (len(where), 3, 3)), -cross_matrix(where)], axis=2)
-        momenta, stiffness = np.zeros_like(rigid), _ties(cells, len(where))
-        for each in cells:
-            freedoms = _freedoms(each.nodes)
-            pairs = (np.repeat(freedoms, 81, axis=1).ravel(), np.tile(freedoms, (1, 81)).ravel())
-            stiffness += scipy.sparse.csc_array((each.stiffness.ravel(), pairs), stiffness.shape)
-            np.add.at(momenta, each.nodes, np.einsum("cnm,cmak->cnak", each.masses, rigid[each.nodes]))
+        nodes = np.concatenate([each.nodes for each in cells])
+        freedoms = (3 * nodes[..., None] + np.arange(3)).reshape(len(nodes), -1)
+        pairs = (np.repeat(freedoms, 3 * _NODES, axis=1).ravel(), np.tile(freedoms, (1, 3 * _NODES)).ravel())
+        values = np.concatenate([each.stiffness for each in cells])
+        stiffness = scipy.sparse.csc_array((values.ravel(), pairs), (3 * len(where), 3 * len(where))) + _ties(cells, len(where))
+        momenta = np.zeros_like(rigid)
+        np.add.at(momenta, nodes, np.einsum("cnm,cmak->cnak", np.concatenate([each.masses for each in cells]), rigid[nodes], optimize=True))
         return _Solid(cells, stiffness, momenta.reshape(-1, 6), rigid.reshape(-1, 6))
 
     def flexibility(self, faces: Array) -> Array:
@@ -401,36 +426,54 @@ class _Solid:
         return np.linalg.pinv(arms) @ points.reshape(-1, len(self.rigid))
 
 
-def _freedoms(nodes: Array) -> Array:
-    """Numbers (c, 81) of the coordinates of nodes (c, 27)."""
-    return (3 * nodes[..., None] + np.arange(3)).reshape(len(nodes), -1)
-
-
 def _ties(cells: Sequence[_Cells], nodes: int) -> Any:
     """Stiffness that ties the cells of each outline to those of the others, at points that are inside both or on both."""
-    total = scipy.sparse.csc_array((3 * nodes, 3 * nodes))
+    columns, values, weights = [np.zeros((0, 2 * _NODES), dtype=int)], [np.zeros((0, 2 * _NODES))], [np.zeros(0)]
+    samples = {id(each): each.samples for each in cells}
     for one, other in permutations(cells, 2):
-        points, stiffness = one.samples
+        points, stiffness = samples[id(one)]
         slack = 1e-6 * float(np.max(one.half))
         shared = np.flatnonzero(other.outline.contains(points, slack) & one.outline.contains(points, slack))
         if len(shared):
             (own, mine, _), (theirs, less, _) = one.shares(points[shared]), other.shares(points[shared])
-            columns, values = np.concatenate([own, theirs], axis=1), np.concatenate([mine, -less], axis=1)
-            rows = np.repeat(np.arange(len(shared)), columns.shape[1])
-            gap = scipy.sparse.csc_array((values.ravel(), (rows, columns.ravel())), (len(shared), nodes))
-            total += scipy.sparse.kron(gap.T @ scipy.sparse.diags_array(stiffness[shared]) @ gap, np.eye(3), format="csc")
-    return total
+            columns.append(np.concatenate([own, theirs], axis=1))
+            values.append(np.concatenate([mine, -less], axis=1))
+            weights.append(stiffness[shared])
+    column, weight = np.concatenate(columns), np.concatenate(weights)
+    rows = np.repeat(np.arange(len(weight)), 2 * _NODES)
+    gap = scipy.sparse.csc_array((np.concatenate(values).ravel(), (rows, column.ravel())), (len(weight), nodes))
+    return scipy.sparse.kron(gap.T @ scipy.sparse.diags_array(weight) @ gap, np.eye(3), format="csc")
 
 
 def _shapes(points: Array) -> tuple[Array, Array]:
-    """Quadratic shape functions (p, 27) of a cell of half sizes one, and their gradients (p, 27, 3), at points (..., 3)."""
+    """Serendipity shape functions (p, 20) of a cell of half sizes one, and their gradients (p, 20, 3), at points (..., 3).
+
+    They are the 27 triquadratic ones, where the motion of the middles of faces and of the cell follows that of corners and edges.
+    """
     at = np.atleast_2d(points)
     values = np.stack([0.5 * at * (at - 1.0), 1.0 - at * at, 0.5 * at * (at + 1.0)], axis=-1)
     slopes = np.stack([at - 0.5, -2.0 * at, at + 0.5], axis=-1)
     chosen = [[slopes if axis == along else values for axis in range(3)] for along in range(3)]
     x, y, z = (values[:, axis] for axis in range(3))
     gradients = [np.einsum("pi,pj,pk->pijk", *(each[:, axis] for axis, each in enumerate(way))).reshape(-1, 27) for way in chosen]
-    return np.einsum("pi,pj,pk->pijk", x, y, z).reshape(-1, 27), np.stack(gradients, axis=-1)
+    return np.einsum("pi,pj,pk->pijk", x, y, z).reshape(-1, 27) @ _FOLLOW, np.stack([each @ _FOLLOW for each in gradients], axis=-1)
 
 
+def _follow() -> Array:
+    """Motion (27, 20) of the points of a triquadratic cell by that of its corners and the middles of its edges."""
+    points = np.array(list(product(range(3), repeat=3)))
+    near = np.all((points[:, None] == _CORNERS) | (points[:, None] == 1), axis=2)
+    middles = np.sum(points == 1, axis=1)[:, None]
+    edges = np.any(_CORNERS == 1, axis=1)
+    return near * np.where(middles < 2, ~near | (np.sum(_CORNERS == 1, axis=1) == middles), np.where(edges, 0.5 / np.maximum(middles - 1, 1), -0.25))
+
+
+_NODES = len(_CORNERS)
+_FOLLOW = _follow()
 _SHAPES, _SLOPES = _shapes(_POINTS)
+
+
+@SESSION.keep(1)
+def _pairs() -> Array:
+    """Products (p, 3600) of the slopes of any two nodes of a cell, at its points."""
+    return np.einsum("pik,pjl->pklij", _SLOPES, _SLOPES).reshape(len(_POINTS), -1)

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, name_first
+from flexstage.base.units.quantity import FREQUENCY, ROTATIONAL_STIFFNESS, STIFFNESS, Quantity
+from flexstage.base.units.unit import show
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.flexible_bodies import body_flexibilities, with_flexible_bodies
 from flexstage.models.linear.eigen import lowest_modes
@@ -22,12 +24,12 @@ _FREQUENCIES = 6
 
 @dataclass(frozen=True)
 class BodyEffect:
-    """A quantity with `rigid` bodies and with `flexible` ones [N/m, N m/rad, Hz]; the `body`, or all equal ones, that changes it most."""
+    """A `name` of a quantity with `rigid` and with `flexible` bodies, in SI; the `body`, or all equal ones, that changes it most."""
 
-    quantity: str
+    name: str
+    quantity: Quantity
     rigid: float
     flexible: float
-    unit: str
     body: str
 
     @property
@@ -56,32 +58,35 @@ def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematic
     rigid, flexible = (_quantities(each, kinematics) for each in (model, with_flexible_bodies(model, mechanism, found)))
     groups = [[each for each in found if each.group == number] for number in {each.group: None for each in found}]
     alone = {
-        ", ".join(each.body for each in group): _quantities(with_flexible_bodies(model, mechanism, group), kinematics) for group in groups
+        name_first([each.body for each in group]): _quantities(with_flexible_bodies(model, mechanism, group), kinematics) for group in groups
     }
     return tuple(
-        BodyEffect(name, value, flexible[name][0], unit, min(alone, key=lambda body, name=name: alone[body][name][0]))
-        for name, (value, unit) in rigid.items()
+        BodyEffect(name, quantity, value, flexible[name][1], min(alone, key=lambda body, name=name: alone[body][name][1]))
+        for name, (quantity, value) in rigid.items()
     )
 
 
-def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, tuple[float, str]]:
-    """Stiffness along the ideal motions and the first frequencies, each with its unit."""
-    result: dict[str, tuple[float, str]] = {}
+def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, tuple[Quantity, float]]:
+    """Stiffness along the ideal motions and the first frequencies, by name."""
+    result: dict[str, tuple[Quantity, float]] = {}
     rows = [place for place, each in enumerate(model.outputs) if each.name in {f"{PLATFORM}.{name}" for name in COMPONENTS}]
     if kinematics is not None and len(rows) == len(COMPONENTS):
         compliance = model.output[rows] @ np.linalg.solve(model.stiffness_matrix, model.output[rows].T)
         for name, motion in zip(kinematics.coordinates, kinematics.motion.T, strict=True):
             direction = motion / motion[COMPONENTS.index(name)]
-            result[f"stiffness along {name}"] = float(1.0 / (direction @ compliance @ direction)), "N/m" if len(name) == 1 else "N m/rad"
+            stiffness = float(1.0 / (direction @ compliance @ direction))
+            result[f"the stiffness along {name}"] = STIFFNESS if len(name) == 1 else ROTATIONAL_STIFFNESS, stiffness
     frequencies = np.sqrt(lowest_modes(model).values[:_FREQUENCIES]) / (2.0 * np.pi)
-    return result | {f"frequency {number}": (float(value), "Hz") for number, value in enumerate(frequencies, 1)}
+    return result | {f"frequency {number}": (FREQUENCY, float(value)) for number, value in enumerate(frequencies, 1)}
 
 
 def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
-    """One warning for each body that changes quantities by more than `SIGNIFICANT`."""
+    """One warning for each body that changes quantities by more than `SIGNIFICANT`; it names the two that change most."""
     large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: each.change)
     for body in dict.fromkeys(each.body for each in large):
         worst = [each for each in large if each.body == body][:2]
-        values = " and ".join(f"{each.quantity} by {abs(each.change):.0%} (to {each.flexible:.4g} {each.unit})" for each in worst)
-        what = f"taken as rigid, but by its outlines it bends: this lowers {values}"
-        yield Finding(body, what, "Make it thicker, or compare with finite elements: flexstage verify")
+        values = " and ".join(
+            f"{each.name} by {100.0 * each.change:.0f} % (to {show(each.flexible, each.quantity, digits=4)})" for each in worst
+        )
+        what = f"the model takes it as rigid; its estimated flexibility changes {values}"
+        yield Finding(body, what, "Make it stiffer, or compare with finite elements: flexstage verify")
