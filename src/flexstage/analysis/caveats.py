@@ -79,8 +79,8 @@ def caveats(mechanism: Mechanism) -> Caveats:
     """Warnings and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> caveats(double_triangle()).warnings
-    ()
+    >>> [each.where for each in caveats(double_triangle()).warnings]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     """
     return Caveats(design_warnings(mechanism), defaults(mechanism))
 
@@ -195,8 +195,8 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     A part that departs from the shared one is told by its link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> design_warnings(double_triangle())
-    ()
+    >>> [each.where for each in design_warnings(double_triangle())]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     """
     factors = load_factors(mechanism)
     return (
@@ -205,13 +205,13 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         *implausible(_catalogue_items(mechanism)),
         *_disproportions(mechanism),
         *_overload_findings(mechanism),
-        *_flexible_bodies(mechanism),
         *_points(mechanism),
         *part_warnings(mechanism),
         *_blockages(mechanism),
         *_large_motions(mechanism),
         *contact_findings(mechanism),
         *_room(mechanism),
+        *_flexible_bodies(mechanism),
         *unused_findings(mechanism),
     )
 

@@ -1,6 +1,6 @@
 """Flexibility of bodies, estimated from their outlines: finite cells, condensed to the ends of the links on each body.
 
-Each outline is laid into a rectangular grid of quadratic hexahedra of 20 nodes; points of a cell outside the material have next to no stiffness
+Each outline has a rectangular grid of quadratic hexahedra with 20 nodes. Points of a cell outside the material have next to no stiffness
 (finite cell method; Parvizian, Duester, Rank, Comput. Mech. 41, 121, 2007). Outlines that meet or overlap are tied together at points of
 their cells. Wrenches at the ends of its links, balanced by the inertia of the accelerated body, give the twists of these ends against the
 body's mean motion (inertia relief). Linear models then hold rigid bodies with a compliance between each body and the ends of its links.
@@ -202,7 +202,9 @@ def _distance(body: PlacedBody, point: Array) -> float:
     return min(float(np.linalg.norm(np.maximum(np.abs(own) - half, 0.0))) for own, half in boxes)
 
 
-def _estimate(body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[str, Material], known: dict[_Problem, int]) -> BodyFlexibility:
+def _estimate(
+    body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[str, Material], known: dict[_Problem, int]
+) -> BodyFlexibility:
     """The flexibility of a body; bodies with the same outlines and ends, each in its own frame, are one of the `known` groups."""
     frame = Frame(max(body.solids.values(), key=lambda placed: math.prod(placed.solid.sides)).frame.rotation, body.reference)
     solids = [_Outline.of(placed, frame, materials[placed.solid.material]) for placed in body.solids.values()]
@@ -282,7 +284,8 @@ class _Outline:
     @property
     def key(self) -> Array:
         """Numbers that tell it from others."""
-        return np.array([int(digest(self.solid, physics=True)[:12], 16), *self.rotation.ravel(), *self.place, self.first, self.shear, self.density])
+        shape = int(digest(self.solid, physics=True)[:12], 16)
+        return np.array([shape, *self.rotation.ravel(), *self.place, self.first, self.shear, self.density])
 
 
 def _apart(half: float, planes: Iterable[float], least: float) -> Array:
@@ -464,8 +467,8 @@ def _follow() -> Array:
     points = np.array(list(product(range(3), repeat=3)))
     near = np.all((points[:, None] == _CORNERS) | (points[:, None] == 1), axis=2)
     middles = np.sum(points == 1, axis=1)[:, None]
-    edges = np.any(_CORNERS == 1, axis=1)
-    return near * np.where(middles < 2, ~near | (np.sum(_CORNERS == 1, axis=1) == middles), np.where(edges, 0.5 / np.maximum(middles - 1, 1), -0.25))
+    ones = np.sum(_CORNERS == 1, axis=1)
+    return near * np.where(middles < 2, ones == middles, np.where(ones > 0, 0.5 / np.maximum(middles - 1, 1), -0.25))
 
 
 _NODES = len(_CORNERS)

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.finding import Finding, name_first
-from flexstage.base.units.quantity import FREQUENCY, ROTATIONAL_STIFFNESS, STIFFNESS, Quantity
-from flexstage.base.units.unit import show
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.flexible_bodies import body_flexibilities, with_flexible_bodies
 from flexstage.models.linear.eigen import lowest_modes
@@ -18,24 +16,23 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 SIGNIFICANT = 0.05
-"""Relative change of a stiffness or frequency above which rigid bodies are doubtful."""
+"""Relative error of a stiffness or frequency above which rigid bodies are doubtful."""
 _FREQUENCIES = 6
 
 
 @dataclass(frozen=True)
 class BodyEffect:
-    """A `name` of a quantity with `rigid` and with `flexible` bodies, in SI; the `body`, or all equal ones, that changes it most."""
+    """A `quantity` with `rigid` and with `flexible` bodies, in SI; the `body`, or all equal ones, that changes it most."""
 
-    name: str
-    quantity: Quantity
+    quantity: str
     rigid: float
     flexible: float
     body: str
 
     @property
-    def change(self) -> float:
-        """Relative change; negative where flexible bodies make it softer or slower."""
-        return self.flexible / self.rigid - 1.0
+    def loss(self) -> float:
+        """Relative error of rigid bodies."""
+        return self.rigid / self.flexible - 1.0
 
 
 def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None = None) -> tuple[BodyEffect, ...]:
@@ -47,7 +44,7 @@ def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematic
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
-    >>> all(each.change < 0.0 for each in body_effects(stage, lumped(stage)))
+    >>> all(each.loss > 0.0 for each in body_effects(stage, lumped(stage)))
     True
     """
     if model.is_sparse or model.stiffness_matrix.ndim > 2:
@@ -58,35 +55,31 @@ def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematic
     rigid, flexible = (_quantities(each, kinematics) for each in (model, with_flexible_bodies(model, mechanism, found)))
     groups = [[each for each in found if each.group == number] for number in {each.group: None for each in found}]
     alone = {
-        name_first([each.body for each in group]): _quantities(with_flexible_bodies(model, mechanism, group), kinematics) for group in groups
+        name_first([each.body for each in group]): _quantities(with_flexible_bodies(model, mechanism, group), kinematics)
+        for group in groups
     }
     return tuple(
-        BodyEffect(name, quantity, value, flexible[name][1], min(alone, key=lambda body, name=name: alone[body][name][1]))
-        for name, (quantity, value) in rigid.items()
+        BodyEffect(name, value, flexible[name], min(alone, key=lambda body, name=name: alone[body][name])) for name, value in rigid.items()
     )
 
 
-def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, tuple[Quantity, float]]:
+def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, float]:
     """Stiffness along the ideal motions and the first frequencies, by name."""
-    result: dict[str, tuple[Quantity, float]] = {}
+    result: dict[str, float] = {}
     rows = [place for place, each in enumerate(model.outputs) if each.name in {f"{PLATFORM}.{name}" for name in COMPONENTS}]
     if kinematics is not None and len(rows) == len(COMPONENTS):
         compliance = model.output[rows] @ np.linalg.solve(model.stiffness_matrix, model.output[rows].T)
         for name, motion in zip(kinematics.coordinates, kinematics.motion.T, strict=True):
             direction = motion / motion[COMPONENTS.index(name)]
-            stiffness = float(1.0 / (direction @ compliance @ direction))
-            result[f"the stiffness along {name}"] = STIFFNESS if len(name) == 1 else ROTATIONAL_STIFFNESS, stiffness
+            result[f"the stiffness along {name}"] = float(1.0 / (direction @ compliance @ direction))
     frequencies = np.sqrt(lowest_modes(model).values[:_FREQUENCIES]) / (2.0 * np.pi)
-    return result | {f"frequency {number}": (FREQUENCY, float(value)) for number, value in enumerate(frequencies, 1)}
+    return result | {f"frequency {number}": float(value) for number, value in enumerate(frequencies, 1)}
 
 
 def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
     """One warning for each body that changes quantities by more than `SIGNIFICANT`; it names the two that change most."""
-    large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: each.change)
+    large = sorted((each for each in effects if abs(each.loss) > SIGNIFICANT), key=lambda each: -abs(each.loss))
     for body in dict.fromkeys(each.body for each in large):
         worst = [each for each in large if each.body == body][:2]
-        values = " and ".join(
-            f"{each.name} by {100.0 * each.change:.0f} % (to {show(each.flexible, each.quantity, digits=4)})" for each in worst
-        )
-        what = f"the model takes it as rigid; its estimated flexibility changes {values}"
-        yield Finding(body, what, "Make it stiffer, or compare with finite elements: flexstage verify")
+        values = " and ".join(f"{each.quantity} by {100.0 * (each.flexible / each.rigid - 1.0):.0f} %" for each in worst)
+        yield Finding(body, f"it is taken as rigid; its flexibility changes {values}", "Make it stiffer, or compare: flexstage verify")

@@ -115,10 +115,10 @@ def _short_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[T
 def _short_caveats(analysis: Analysis) -> Iterator[str]:
     known = caveats(analysis.mechanism)
     if known.warnings:
-        shown = _first_lines([f"  {each}" for each in known.warnings])
+        shown = _first_lines([str(each) for each in known.warnings])
         rest = len(known.warnings) - len(shown)
-        more = [f"  {rest} more: --full"] if rest > 0 else []
-        yield "\n".join(["Warnings", "", *shown, *more])
+        more = f" ({rest} more: --full)" if rest > 0 else ""
+        yield f"Warnings{more}: " + "\n  ".join(shown)
     taken = len(known.defaults_of("analyse"))
     if taken:
         yield f"{taken} value{'' if taken == 1 else 's'} taken by default: --full."
