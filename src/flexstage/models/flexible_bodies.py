@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import pairwise, permutations, product
 from typing import Any
@@ -26,8 +27,11 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.channels import exerted_wrenches
 from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.parts.body import Block, Extrusion, Imported, PlacedSolid, Solid
+from flexstage.parts.compliance_matrix import Joint
+from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
-from flexstage.parts.part import inner, span
+from flexstage.parts.part import Part, Restricted, inner, span
+from flexstage.parts.profile import single
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import FORCES, Frame, cross_matrix, spatial_rotation, twist_transform
 
@@ -37,12 +41,14 @@ _SLENDER, _COMPACT, _CUT, _WHOLE = 4, 3, 8, 8
 """Cells along the longest side of a slender and of a compact block, of another outline, whose surface cuts them, and of a whole body."""
 _EMPTY, _VOID = 0.005, 1e-3
 """Share of material below which a cell is left out; stiffness of points outside the material, over that of the material."""
-_MOST = 200
-"""Bodies of a stage above which none is estimated."""
+_MOST, _MANY = 200, 40
+"""Bodies of a stage above which none is estimated, and outlines of a body above which it is not."""
 _FAR = 0.25
 """Distance of a link's end from the outlines, over the body's longest side, above which the body is not estimated."""
 _SOUND = 0.25
 """Share of material from which on the motion of a cell is that of its points."""
+_LOOSE = 1e9
+"""Compliance times shear modulus and size, above which parts of a body are taken as loose."""
 _SAME = 1e-6
 """Share of a body's size below which two planes are one."""
 _TIE = 100.0
@@ -88,8 +94,8 @@ class BodyEstimates:
 def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """Estimate the flexibility of every body of one design from its outlines.
 
-    Bodies without outlines, with imported ones, on superelements or on ideal joints, and those whose links end far from the outlines, have
-    a reason instead. Instances of one unit share their estimate.
+    Bodies without outlines, with imported ones, on superelements, ideal joints or fixed freedoms, and those whose links end far from the
+    outlines, have a reason instead; so have all bodies of large stages. Equal bodies share their estimate.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [each.body for each in body_flexibilities(parallelogram()).found]
@@ -104,11 +110,14 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     reasons: dict[str, str] = {}
     known: dict[_Problem, int] = {}
     for name, body in assembly.bodies.items():
-        links = [link for link in assembly.links.values() if name in link.joins and np.any(span(link.part))]
-        if (reason := _reason(body, links)) is not None:
+        links = [link for link in assembly.links.values() if name in link.joins]
+        reason = _reason(body, links, mechanism.materials)
+        if reason is None and (ends := [link for link in links if np.any(span(link.part))]):
+            estimate = _estimate(body, ends, mechanism.materials, known)
+            found += [] if estimate is None else [estimate]
+            reason = None if estimate is not None else "its outlines do not hold together, or are too thin"
+        if reason is not None:
             reasons[name] = reason
-        elif links:
-            found.append(_estimate(body, links, mechanism.materials, known))
     return BodyEstimates(tuple(found), reasons)
 
 
@@ -172,19 +181,29 @@ def _end_strains(assembly: Assembly, flexibilities: Sequence[BodyFlexibility], r
     return result
 
 
-def _reason(body: PlacedBody, links: Sequence[PlacedLink]) -> str | None:
+def _reason(body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[str, Material]) -> str | None:
     """Why the flexibility of a body is not estimated."""
     solids = [placed.solid for placed in body.solids.values()]
     if not solids:
         return "it has no outlines"
-    if any(isinstance(each, Imported) for each in solids):
-        return "an outline of it is imported"
+    if any(isinstance(each, Imported) for each in solids) or len(solids) > _MANY:
+        return f"an outline of it is imported, or it has more than {_MANY}"
+    if any(materials[each.material].is_cubic or materials[each.material].density == 0.0 for each in solids):
+        return "a material of it is a crystal or has no density"
     if any(not isinstance(each, PlacedLink) and each.joints(body.name) for each in body.links):
         return "it joins a superelement"
+    rigid = next((link.name for link in links if _is_rigid(link.part)), None)
+    if rigid is not None:
+        return f"{rigid} is rigid along some freedoms"
     size = max(float(np.max(each.sides)) for each in solids)
-    far = {link.name: _distance(body, _end(link, body.name)) for link in links}
+    far = {link.name: _distance(body, _end(link, body.name)) for link in links if np.any(span(link.part))}
     worst = max(far, key=far.__getitem__, default="")
     return f"{worst} ends {far[worst] * 1e3:.3g} mm outside its outlines" if worst and far[worst] > _FAR * size else None
+
+
+def _is_rigid(part: Part) -> bool:
+    """Whether a part is an ideal joint, or has fixed freedoms."""
+    return isinstance(part, Joint) or (isinstance(part, Restricted) and len({*part.elastic, *part.free}) < len(Freedom))
 
 
 def _end(link: PlacedLink, body: str) -> Array:
@@ -204,8 +223,8 @@ def _distance(body: PlacedBody, point: Array) -> float:
 
 def _estimate(
     body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[str, Material], known: dict[_Problem, int]
-) -> BodyFlexibility:
-    """The flexibility of a body; bodies with the same outlines and ends, each in its own frame, are one of the `known` groups."""
+) -> BodyFlexibility | None:
+    """The flexibility of a body, if it holds together; bodies with the same outlines and ends are one of the `known` groups."""
     frame = Frame(max(body.solids.values(), key=lambda placed: math.prod(placed.solid.sides)).frame.rotation, body.reference)
     solids = [_Outline.of(placed, frame, materials[placed.solid.material]) for placed in body.solids.values()]
     ends = np.array([_end(link, body.name) for link in links])
@@ -213,9 +232,12 @@ def _estimate(
     faces = np.array(spots)[..., 0]
     key = tuple((np.round(each, 9) + 0.0).tobytes() for each in (*(solid.key for solid in solids), faces))
     problem = _Problem(key, solids, faces)
+    own = _compliance(problem)
+    if own is None:
+        return None
     turn = np.kron(np.eye(len(links)), spatial_rotation(frame.rotation))
-    compliance = turn @ _compliance(problem) @ turn.T
-    return BodyFlexibility(body.name, known.setdefault(problem, len(known)), tuple(link.name for link in links), ends, compliance)
+    names, group = tuple(link.name for link in links), known.setdefault(problem, len(known))
+    return BodyFlexibility(body.name, group, names, ends, turn @ own @ turn.T)
 
 
 @dataclass(frozen=True)
@@ -228,9 +250,14 @@ class _Problem:
 
 
 @SESSION.keep(64)
-def _compliance(problem: _Problem) -> Array:
-    """Compliance (6 k, 6 k) at the ends of links, in the body's frame."""
-    return _Solid.of(problem.outlines).flexibility(problem.faces)
+def _compliance(problem: _Problem) -> Array | None:
+    """Compliance (6 k, 6 k) at the ends of links, in the body's frame; none where parts of the body are loose."""
+    solid = _Solid.of(problem.outlines)
+    with suppress(RuntimeError):  # K is singular
+        found = None if solid is None else solid.flexibility(problem.faces)
+        shear, size = problem.outlines[0].shear, max(float(np.max(each.solid.sides)) for each in problem.outlines)
+        return None if found is None or np.max(np.abs(np.diag(found).reshape(-1, 6)[:, :3])) * shear * size > _LOOSE else found
+    return None
 
 
 def _face(link: PlacedLink, body: str) -> Array:
@@ -257,7 +284,7 @@ class _Outline:
     def of(placed: PlacedSolid, frame: Frame, material: Material) -> _Outline:
         rotation = frame.rotation.T @ placed.frame.rotation
         place = frame.rotation.T @ (placed.frame.position - frame.position)
-        young, poisson, density = (float(each) for each in (material.young, material.poisson, material.density))
+        young, poisson, density = (single(each) for each in (material.modulus, material.contraction, material.density))
         shear = 0.5 * young / (1.0 + poisson)
         return _Outline(placed.solid, rotation, place, 2.0 * shear * poisson / (1.0 - 2.0 * poisson), shear, density)
 
@@ -276,6 +303,11 @@ class _Outline:
         step = max(side / _SLENDER, min(side / _COMPACT, thick), least) if isinstance(self.solid, Block) else max(side / _CUT, thick)
         faces = [_apart(each, planes, least) for each, planes in zip(half, inner, strict=True)]
         return [_divided(each, max(step, finest)) for each in faces]
+
+    def meets(self, other: _Outline) -> bool:
+        """Whether the boxes around two outlines, along the body's axes, touch or overlap."""
+        reach = sum(np.abs(each.rotation) @ np.asarray(each.solid.sides, dtype=float) for each in (self, other))
+        return bool(np.all(np.abs(self.place - other.place) <= (0.5 + _SAME) * reach))
 
     def contains(self, points: Array, slack: float = 0.0) -> Array:
         """Which points (n, 3) of the body's frame are inside."""
@@ -321,7 +353,8 @@ class _Cells:
     @staticmethod
     def of(outlines: Sequence[_Outline], number: int, begin: int) -> _Cells:
         """The cells of one of a body's outlines, but for what is in those before it; their nodes are counted from `begin`."""
-        outline, others = outlines[number], outlines[:number]
+        outline = outlines[number]
+        others = [each for each in outlines[:number] if each.meets(outline)]
         size = max(np.ptp([each.place for each in outlines], axis=0).max(), *(float(np.max(each.solid.sides)) for each in outlines))
         grid = outline.planes(size / _WHOLE)
         places = np.array(list(product(*(range(len(each) - 1) for each in grid))))
@@ -387,12 +420,14 @@ class _Solid:
     rigid: Array
 
     @staticmethod
-    def of(outlines: Sequence[_Outline]) -> _Solid:
-        """Cells of all outlines, tied together where these meet or overlap."""
+    def of(outlines: Sequence[_Outline]) -> _Solid | None:
+        """Cells of all outlines, tied together where these meet or overlap; none where no cell has material."""
         cells: list[_Cells] = []
         for number in range(len(outlines)):
             found = _Cells.of(outlines, number, sum(len(other.where) for other in cells))
             cells += [found] if len(found.middle) else []
+        if not cells:
+            return None
         where = np.concatenate([each.where for each in cells])
         rigid = np.concatenate([np.broadcast_to(np.eye(3), (len(where), 3, 3)), -cross_matrix(where)], axis=2)
         nodes = np.concatenate([each.nodes for each in cells])
@@ -433,7 +468,7 @@ def _ties(cells: Sequence[_Cells], nodes: int) -> Any:
     """Stiffness that ties the cells of each outline to those of the others, at points that are inside both or on both."""
     columns, values, weights = [np.zeros((0, 2 * _NODES), dtype=int)], [np.zeros((0, 2 * _NODES))], [np.zeros(0)]
     samples = {id(each): each.samples for each in cells}
-    for one, other in permutations(cells, 2):
+    for one, other in (pair for pair in permutations(cells, 2) if pair[0].outline.meets(pair[1].outline)):
         points, stiffness = samples[id(one)]
         slack = 1e-6 * float(np.max(one.half))
         shared = np.flatnonzero(other.outline.contains(points, slack) & one.outline.contains(points, slack))
