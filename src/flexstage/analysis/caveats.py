@@ -369,8 +369,8 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     `severity` of a finding distinguishes them. An empty tuple means that the stage has neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> check(double_triangle())
-    ()
+    >>> [finding.where for finding in check(double_triangle())]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     >>> [finding.severity.value for finding in check(Mechanism("empty"))]
     ['error']
     """
