@@ -60,7 +60,7 @@ def test_what_is_taken_by_default_stands_apart(flexstage: Command, tmp_path: Pat
     massless = ("--set", "parts.stack_vertical.mass=0 kg")
     ended = flexstage("modes", "stage.toml", *massless, "--json", "out.json")
     document = json.loads((tmp_path / "out.json").read_text())
-    assert document["warnings"] == []
+    assert not [each for each in document["warnings"] if each["where"].startswith("parts")]
     assert [each["what"] for each in document["defaults"]] == ["stack mass 0 by default"]
     assert "\ndefault: parts.stack_vertical: stack mass 0 by default. " in ended.out
     assert "default: " not in flexstage("mapping", "stage.toml", *massless).out, "mappings weigh nothing"
