@@ -253,7 +253,7 @@ def test_tests_that_do_not_fit_are_refused() -> None:
 def test_gains_need_units_actuators_and_low_lines() -> None:
     experiment, known = made(STAGE), Prior(gain_error=1e-3)
     bare = tuple(Channel(channel.name, "", channel.role) for channel in experiment.inputs)
-    with pytest.raises(DesignError, match="leads to no stroke"):
+    with pytest.raises(DesignError, match="leads to no reading or input"):
         update(STAGE, replace(experiment, inputs=bare), [LEVER], known)
     named = tuple(replace(channel, name=f"u{channel.name}") for channel in experiment.inputs)
     with pytest.raises(DesignError, match="no input of the record has the name of an actuator"):

@@ -98,6 +98,15 @@ Xlsx: TypeAlias = Annotated[
 
 Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")]
 
+InputDensities: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--input-asd",
+        "INPUT=DENSITY",
+        'Amplitude spectral density of a white input or its rate, e.g. "ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
+    ),
+]
+
 GaugeNoise: TypeAlias = Annotated[
     str | None, text_option("--gauge-noise", "DENSITY", 'Noise density of the gauges, e.g. "0.1 nm/Hz^0.5". Default: that of the design.')
 ]

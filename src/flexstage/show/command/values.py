@@ -95,6 +95,20 @@ def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]
     return read_pairs(texts, option, read)
 
 
+def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
+    """The frequencies [Hz] of `--band`; refused where they do not rise from above zero.
+
+    >>> band_limits(("10 Hz", "2 kHz"))
+    (10.0, 2000.0)
+    """
+    if band is None:
+        return None
+    low, high = (parse(text, FREQUENCY, where="--band") for text in band)
+    if not 0.0 < low < high:
+        raise refuse("--band", f"{band[0]} to {band[1]} is no band", "Give a low frequency above zero and a higher one")
+    return low, high
+
+
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
     """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second derivative.
 
