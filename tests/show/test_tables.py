@@ -54,6 +54,7 @@ TITLES = {
     "transmissibility": "ground.z",
     "workspace": "Single-axis strokes",
     "buckling": "Buckling",
+    "stress": "Stress in the hinges",
     "drift": "Thermal drift",
     "error_budget": "Error budget, ideal mapping commanded",
     "verdicts": "Requirements",

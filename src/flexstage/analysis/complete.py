@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.budget import budget
 from flexstage.analysis.assessment.error_budget import ErrorBudget
-from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.assessment.judge import bench_of, judge
 from flexstage.analysis.assessment.measures import stroke
 from flexstage.analysis.assessment.requirements import Sense, Verdict, asked_factor, requirements
 from flexstage.analysis.attempt import Attempts
@@ -28,6 +28,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.force_workspace import ForceWorkspace
 from flexstage.analysis.workspace.force_workspace import force_workspace as reach_of
 from flexstage.analysis.workspace.small import SecondOrder, second_order
+from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.arguments import check_arguments
@@ -63,7 +64,8 @@ class Analysis:
     the dead load changes; where it is felt, statics, modes, responses (`felt`), lost motion, drift, error budget and their verdicts are
     those of the loaded stage, all else and `linear` are of the drawn one. `second_order` is the error of small displacements over the
     required strokes, or those reached. `ends` is what loads the stage against what it bears at the ends of the paths that it states, as far
-    as that is asked for; None where it states none. The error budget is that of the required strokes, or of all single-axis strokes at
+    as that is asked for; None where it states none. `stress` is at the required strokes, or of force-driven stages without them at peak
+    current. The error budget is that of the required strokes, or of all single-axis strokes at
     once, and of one kelvin. `freedoms` (stiffness along the motions left and along what links hold; None where six are left) and `mass` of
     the platform belong to the statics.
     """
@@ -92,6 +94,7 @@ class Analysis:
     loaded: LoadEffect | None = None
     second_order: SecondOrder | None = None
     ends: load_cases.CaseFactors | None = None
+    stress: HingeStress | None = None
 
     @property
     def felt(self) -> LinearModel | None:
@@ -139,7 +142,8 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
     >>> round(float(analyse(double_triangle(), Model.MAPPED).modes.frequencies[0]), 2)
     110.91
     """
-    verdicts = judge(mechanism)
+    bench = bench_of(mechanism)
+    verdicts = judge(mechanism, bench)
     kinematics = ideal(mechanism)
     linear, loading = read(mechanism, model), load_effect(mechanism) if model is Model.LUMPED else None
     weighed, linked = (linear, linear) if loading is None or loading.model is None else (loading.model, loading.links)
@@ -184,6 +188,9 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         loaded=loading,
         second_order=second_order(mechanism, kinematics, command if command or reach is None else reach.command),
         ends=attempt.of_ground("ends", hinged, _UNLUMPED, lambda _: _ends(mechanism)) if mechanism.paths else None,
+        stress=attempt.of("stress", lambda: bench.stress_at_strokes if bench.command else bench.stress)
+        if model is Model.LUMPED and (bench.command or forced is not None)
+        else None,
         missing=Table(attempt.missing),
     )
 

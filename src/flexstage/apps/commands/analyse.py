@@ -167,6 +167,7 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     yield None if analysis.modes is None else mode_table(analysis.modes)
     if analysis.force_workspace is not None:
         yield from force_workspace_tables(analysis.force_workspace)
+    yield workspace.weakest_first(analysis.stress)
     if analysis.workspace is not None:
         yield from workspace.stroke_tables(analysis.workspace)
         yield from workspace.strength_tables(analysis.workspace)

@@ -49,12 +49,9 @@ def strength_section(analysis: Analysis) -> Section | None:
     """
     reach = analysis.workspace
     if reach is not None:
-        return section("Forces, strength and clearance", _strength(reach))
-    return (
-        None
-        if analysis.buckling is None
-        else section("Buckling", [result_table(analysis.buckling.stage), weakest_first(analysis.buckling)])
-    )
+        return section("Forces, strength and clearance", [weakest_first(analysis.stress), *_strength(reach)])
+    buckled = [] if analysis.buckling is None else [result_table(analysis.buckling.stage), weakest_first(analysis.buckling)]
+    return section("Strength", [weakest_first(analysis.stress), *buckled])
 
 
 def _strength(reach: Workspace) -> list[Block | None]:

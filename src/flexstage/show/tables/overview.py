@@ -12,6 +12,7 @@ from flexstage.analysis.assessment.measures import MeasureKind
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.base.number import first_design
 from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
@@ -215,12 +216,16 @@ def _first_rows(table: Table) -> Table:
 def _strength_text(analysis: Analysis) -> str | None:
     reach = analysis.workspace
     buckling = analysis.buckling if reach is None else reach.buckling
-    said: list[str] = []
-    if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {number(single(reach.stress.min_safety), 4)} against yield, in {reach.stress.weakest}")
+    said = [_weakest_text(each) for each in (analysis.stress, None if reach is None else reach.stress) if each is not None and each.links]
     if buckling is not None:
         said.append(f"load factor of buckling {number(single(buckling.min_factor), 4)}")
-    return f"Strength: {', '.join(said)}." if said else None
+    return f"Strength: {'; '.join(said)}." if said else None
+
+
+def _weakest_text(found: HingeStress) -> str:
+    """The least safety factor at the worst corner of some strokes, the hinge and the place in it."""
+    place = f", {found.places[found.links.index(found.weakest)]}" if found.places else ""
+    return f"safety factor {number(single(found.min_safety), 4)} at the worst corner {found.condition} ({found.weakest}{place})"
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
@@ -284,7 +289,13 @@ def _loss_cause(analysis: Analysis, name: str) -> str:
 
 def _safety_cause(analysis: Analysis, _: str) -> str:
     stress = None if analysis.workspace is None else analysis.workspace.stress
+    if stress is None and analysis.kinematics.thrusts:
+        return "all coils at peak current; safety.at_strokes is at the required strokes"
     return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
+
+
+def _cause_at_strokes(analysis: Analysis, _: str) -> str:
+    return "" if analysis.stress is None else f"the hinge {analysis.stress.weakest}"
 
 
 _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
@@ -294,4 +305,5 @@ _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
     measures.loss: _loss_cause,
     measures.own_loss: _loss_cause,
     measures.safety: _safety_cause,
+    measures.safety_at_strokes: _cause_at_strokes,
 }
