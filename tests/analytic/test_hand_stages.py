@@ -110,3 +110,37 @@ def test_stress_names_hinge_end_and_faces():
     assert "peak current" in loose.stress.condition
     np.testing.assert_allclose(loose.stress.worst_strokes.values, np.sign(loose.stress.strokes) * 2.0)
     assert loose.stress.worst_strokes.unit[0] == ("A",)
+
+
+def test_drive_force_of_a_compliant_coupling():
+    """A coil on a carriage (guide c), a coupling b, the platform (guide p): F / x = p + c (1 + p / b); the ideal guide has p + c."""
+    p, c, b, stiff = 3e4, 5e4, 1e6, 1e9
+    across = (stiff, stiff, 1e7, 1e7, 1e7)
+    parts = {
+        "coil": fs.VoiceCoil(force_constant=10.0),
+        "p": fs.Spring(diagonal=(p, *across), free=(fs.Freedom.X,)),
+        "c": fs.Spring(diagonal=(c, *across), free=(fs.Freedom.X,)),
+        "b": fs.Spring(diagonal=(b, *across), free=()),
+    }
+    joins = {"p": ("ground", "platform"), "c": ("ground", "carriage"), "b": ("carriage", "platform"), "coil": ("ground", "carriage")}
+    links = {name: fs.Link(each, name, (0.0, 0.0, 0.0), fs.X) for name, each in joins.items()}
+    bodies = {name: fs.Body(mass=1.0, centre=(0.0, 0.0, 0.0), inertia=fs.Inertia(1e-3, 1e-3, 1e-3)) for name in ("platform", "carriage")}
+    stage = fs.Mechanism("coupled", parts=parts, bodies=bodies, links=links, gravity=(0.0, 0.0, 0.0))
+    found = fs.analyse(stage, whole=False).drive_force
+    assert found is not None
+    np.testing.assert_allclose(found.force.values, [[p + c * (1.0 + p / b), p + c]], rtol=1e-9)
+    np.testing.assert_allclose(found.total, [c * p / b / (p + c)], rtol=1e-7)
+    by_hand = {"p": p * (b + c), "c": c * (b + p), "b": -c * p}
+    for name, share in by_hand.items():
+        assert found.shares.at(name, "x") == pytest.approx(share / sum(by_hand.values()), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["xy", "butterfly", "roberts"])
+def test_drive_force_is_shared_by_the_flexures_that_bend(name):
+    """Equal leaves take equal shares; of the Roberts linkage the upper notches, which turn twice as far, take four times as much."""
+    found = fs.analyse(weightless(name), whole=False).drive_force
+    assert found is not None
+    own = np.sort(np.abs(found.shares.values[:, 0]))[::-1]
+    by_hand = {"xy": [1.0 / 16.0] * 16, "butterfly": [0.125] * 8, "roberts": [0.4, 0.4, 0.1, 0.1]}[name]
+    np.testing.assert_allclose(own[: len(by_hand)], by_hand, rtol=2e-3)
+    assert np.all(np.abs(found.total) < 2e-3)

@@ -18,6 +18,7 @@ from flexstage.analysis.dynamics.modes import Modes, modes
 from flexstage.analysis.dynamics.response import response, transmissibility
 from flexstage.analysis.linear_statics.deflection import Deflection, deflection
 from flexstage.analysis.linear_statics.drift import Drift, drift
+from flexstage.analysis.linear_statics.drive_force import DriveForce, drive_force
 from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
@@ -95,6 +96,7 @@ class Analysis:
     second_order: SecondOrder | None = None
     ends: load_cases.CaseFactors | None = None
     stress: HingeStress | None = None
+    drive_force: DriveForce | None = None
 
     @property
     def felt(self) -> LinearModel | None:
@@ -161,6 +163,11 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         return units(mechanism) if whole or not kinematics.mapping.rows else None  # without strokes they are refused
 
     forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
+    pushed = (
+        None
+        if forced is None
+        else attempt.of_ground("force_workspace", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known))
+    )
     stiff = attempt.of_ground("statics", weighed, _RIGID, statics)
     drifted = attempt.of_ground("drift", linked if model is Model.LUMPED else None, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
@@ -180,9 +187,10 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         error_budget=attempt.of_ground("error_budget", hinged, _UNLUMPED, lambda _: _errors(mechanism, command, reach, drifted)),
         units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: alone()),
         verdicts=verdicts,
-        force_workspace=None
-        if forced is None
-        else attempt.of_ground("force_workspace", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
+        force_workspace=pushed,
+        drive_force=None
+        if pushed is None or hinged is None
+        else attempt.of("drive_force", lambda: drive_force(kinematics, hinged, pushed)),
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
         mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
         loaded=loading,

@@ -26,7 +26,7 @@ from flexstage.show.document import analysis_body, analysis_results, envelope, r
 from flexstage.show.table import Table, result_table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, workspace
 from flexstage.show.tables.change import set_table
-from flexstage.show.tables.force_workspace import force_workspace_tables
+from flexstage.show.tables.force_workspace import drive_force_tables, force_workspace_tables
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.overview import closing_text, load_line, overview_tables, small_line, stage_text
 from flexstage.show.tables.requirements import verdict_table
@@ -167,6 +167,7 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     yield None if analysis.modes is None else mode_table(analysis.modes)
     if analysis.force_workspace is not None:
         yield from force_workspace_tables(analysis.force_workspace)
+    yield from drive_force_tables(analysis.drive_force)
     yield workspace.weakest_first(analysis.stress)
     if analysis.workspace is not None:
         yield from workspace.stroke_tables(analysis.workspace)
