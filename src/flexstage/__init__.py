@@ -47,7 +47,7 @@ HOMES = {
     "mechanism.mechanism": "Mechanism NamedNumber Link StrokePath Unit Placement Probe LinkProbe GaugeSum Stop Force Aperture "
     "ModalDamping StructuralDamping RayleighDamping",
     "mechanism.store": "dump dumps load loads",
-    "mechanism.checks": "check",
+    "analysis.caveats": "check",
     "cases.registry": "case",
     "models.ideal": "ideal",
     "models.lumped": "lumped",

@@ -1,4 +1,7 @@
 from flexstage import control as control, experiment as experiment, solid as solid, studies as studies
+from flexstage.analysis.caveats import (
+    check as check,
+)
 from flexstage.analysis.assessment.budget import (
     budget as budget,
 )
@@ -92,9 +95,6 @@ from flexstage.base.units.scale import (
 )
 from flexstage.cases.registry import (
     case as case,
-)
-from flexstage.mechanism.checks import (
-    check as check,
 )
 from flexstage.mechanism.mechanism import (
     Force as Force,

@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 27_100,
+    "base": 27_200,
     "spatial": 3_900,
     "parts": 37_600,
     "beams": 25_500,
-    "mechanism": 54_000,
+    "mechanism": 54_400,
     "cases": 1_200,
     "models": 90_800,
     "analysis": 66_200,
-    "show": 62_400,
+    "show": 62_800,
     "solid": 75_600,
     "experiment": 97_600,
     "control": 151_800,
     "studies": 49_700,
     "apps": 34_400,
     ".": 400,
-    "all": 777_500,
+    "all": 778_500,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

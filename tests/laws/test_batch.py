@@ -58,7 +58,7 @@ def one(family_plan: Plan, values: np.ndarray) -> Mechanism:
 
 
 @given(st.one_of(mechanisms.fresh(), rosettes.fresh(), actuated_platforms.fresh()))
-@examples(6, 400)
+@examples(4)
 def test_frequencies_are_those_of_each_design_alone(mechanism: Mechanism) -> None:
     family_plan = plan(mechanism, varied(mechanism))
     values = designs(family_plan, 3, 0.05)
@@ -81,7 +81,7 @@ def dense(family_plan: Plan, values: np.ndarray) -> np.ndarray:
 
 @needs_kernel
 @given(rosettes.fresh())
-@examples(8, 200)
+@examples(6)
 def test_iteration_agrees_with_dense_matrices(mechanism: Mechanism) -> None:
     """Rosettes have repeated modes; whatever is proved must be right."""
     family_plan = plan(mechanism, varied(mechanism))
@@ -293,7 +293,7 @@ def test_links_at_the_points_of_their_bodies_have_no_arms() -> None:
 
 
 @given(st.integers(2, 9).flatmap(lambda count: st.tuples(st.just(count), st.sets(st.tuples(st.integers(0, 8), st.integers(0, 8))))))
-@examples(30, 1000)
+@examples(20)
 def test_elimination_orders_any_graph(drawn) -> None:
     count, pairs = drawn
     pairs = {pair for pair in pairs if max(pair) < count}

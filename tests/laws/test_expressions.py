@@ -79,7 +79,7 @@ def amount(text: str, values: dict[str, Any]) -> Amount:
         raise
 
 
-@examples(100, 2000)
+@examples(67)
 @given(TREES)
 def test_values_are_those_of_floats_and_slopes_those_of_numpy(tree: Tree) -> None:
     found = amount(tree.text, VALUES)
@@ -93,7 +93,7 @@ def test_values_are_those_of_floats_and_slopes_those_of_numpy(tree: Tree) -> Non
     assert np.isclose(slope, np.imag(stepped) / 1e-22, rtol=1e-12, atol=0.0, equal_nan=True)
 
 
-@examples(30, 500)
+@examples(20)
 @given(TREES)
 def test_a_batch_gives_what_its_designs_give(tree: Tree) -> None:
     arms = np.array([0.02, 0.026, 0.031])

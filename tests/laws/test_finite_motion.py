@@ -32,7 +32,7 @@ def compare(found, pose, kinematics, tolerance=1e-12):
     np.testing.assert_allclose(found.pose.vector[index], pose.vector[index], rtol=0.0, atol=tolerance)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(actuated_platforms(), seeds)
 def test_forward_undoes_inverse(mechanism, seed):
     kinematics = ideal(mechanism)
@@ -66,7 +66,7 @@ def test_inverse_undoes_forward_over_the_corners(parameters):
     np.testing.assert_allclose(inverse_kinematics(mechanism, kinematics, there.pose).strokes, strokes, rtol=0.0, atol=1e-15)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(actuated_platforms(), seeds)
 def test_error_of_the_linear_map_is_quadratic(mechanism, seed):
     kinematics = ideal(mechanism)
@@ -79,7 +79,7 @@ def test_error_of_the_linear_map_is_quadratic(mechanism, seed):
     np.testing.assert_allclose(4.0 * errors[1], errors[0], rtol=0.0, atol=0.02 * np.max(np.abs(errors[0])) + 1e-14)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(actuated_platforms(), seeds)
 def test_first_derivative_is_the_linear_map(mechanism, seed):
     """By complex step: forward kinematics is analytic."""
@@ -90,7 +90,7 @@ def test_first_derivative_is_the_linear_map(mechanism, seed):
     np.testing.assert_allclose(found.imag / 1e-8, linear, rtol=0.0, atol=1e-6 * np.max(np.abs(linear)))
 
 
-@examples(24, 1000)
+@examples(16)
 @given(actuated_platforms(), turns(), seeds)
 def test_moving_the_stage_only_turns_the_motion(mechanism, move, seed):
     turn, shift = move
@@ -103,7 +103,7 @@ def test_moving_the_stage_only_turns_the_motion(mechanism, move, seed):
     np.testing.assert_allclose(there.pose.rotation_vector, turn @ here.pose.rotation_vector, rtol=0.0, atol=1e-11)
 
 
-@examples(10, 300)
+@examples(7)
 @given(actuated_platforms(), seeds)
 def test_a_batch_of_strokes_is_the_loop(mechanism, seed):
     kinematics = ideal(mechanism)

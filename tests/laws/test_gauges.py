@@ -54,7 +54,7 @@ def read(gauge, body, base, at, along, up):
     return Probe(gauge, body, Pose(at, along, up), SensorSense.OPENS if gauge == "gap" else None, base)
 
 
-@examples(15, 400)
+@examples(10)
 @given(mechanisms(), st.data())
 def test_a_tilt_is_the_difference_of_two_gaps_over_their_base(stage, data):
     """Two gaps along z, one a base along y beyond the other: turning about x opens the further one more."""
@@ -79,7 +79,7 @@ def test_a_tilt_is_the_difference_of_two_gaps_over_their_base(stage, data):
     np.testing.assert_allclose(scale, near, atol=1e-12 * BASE * size)
 
 
-@examples(15, 400)
+@examples(10)
 @given(mechanisms())
 def test_a_strain_gauge_on_a_stack_reads_what_its_force_and_its_stroke_make_it_longer(stage):
     """Elongation = f / k + u: the stack's own force, which another output tells, over its stiffness, and its free stroke."""
@@ -93,7 +93,7 @@ def test_a_strain_gauge_on_a_stack_reads_what_its_force_and_its_stroke_make_it_l
         np.testing.assert_allclose(elongation, expected, atol=1e-9 * np.max(np.abs(expected)))
 
 
-@examples(15, 400)
+@examples(10)
 @given(mechanisms(), places, orientations())
 def test_gauges_feel_no_motion_of_everything_with_the_ground(stage, at, turned):
     """Between bodies that move as one nothing is read; what the model says of a moving ground is the same."""
@@ -109,7 +109,7 @@ def test_gauges_feel_no_motion_of_everything_with_the_ground(stage, at, turned):
     assert not np.any(model.rigid_output[chosen])
 
 
-@examples(12, 300)
+@examples(8)
 @given(actuated_platforms())
 def test_strain_gauges_on_stacks_read_the_strokes_of_the_ideal_stage(stage):
     """R_s over the ideal motions is R_a, in the mapped model too; steps of strain gauges are those of strokes."""

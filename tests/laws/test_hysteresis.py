@@ -24,14 +24,14 @@ def nearly(found, wanted, size, tolerance=1e-12):
     return np.max(np.abs(np.asarray(found) - wanted), initial=0.0) <= tolerance * size
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(least=-0.9), turns)
 def test_the_inverse_undoes_the_model(model, points):
     volts, _ = walked(points)
     assert nearly(inverse(model).run(model.run(volts)), volts, VOLTS)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(least=-0.9), turns)
 def test_the_model_undoes_the_inverse(model, points):
     """The other way round, for strokes anywhere the model can be asked for."""
@@ -39,7 +39,7 @@ def test_the_model_undoes_the_inverse(model, points):
     assert nearly(model.run(inverse(model).run(strokes)), strokes, SIZE)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(least=-0.9))
 def test_the_inverse_of_the_inverse_is_the_model(model):
     twice = inverse(inverse(model))
@@ -47,7 +47,7 @@ def test_the_inverse_of_the_inverse_is_the_model(model):
     assert nearly(twice.weights, model.weights, 1e-7)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(least=-0.9), turns, turns)
 def test_the_inverse_starts_anywhere(model, past, points):
     """Beside a model with a past, from the state that belongs to it."""
@@ -58,7 +58,7 @@ def test_the_inverse_starts_anywhere(model, past, points):
     assert nearly(inverse(model).run(model.run(volts, states), inverse_state(model, states)), volts, VOLTS)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(), turns)
 def test_speed_does_not_matter(model, points):
     """Samples between the turning points change nothing at the turning points."""
@@ -66,7 +66,7 @@ def test_speed_does_not_matter(model, points):
     assert nearly(model.run(volts)[places], model.run(points), SIZE)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(), turns)
 def test_the_output_moves_with_the_input(model, points):
     volts, _ = walked(points)
@@ -74,14 +74,14 @@ def test_the_output_moves_with_the_input(model, points):
     assert np.all(risen >= -1e-14 * SIZE)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(), turns, st.lists(st.floats(0.0, 200.0), min_size=12, max_size=12))
 def test_more_input_never_makes_less_output(model, points, more):
     lower, upper = model.run(points), model.run(points + np.array(more)[: len(points)])
     assert np.all(upper - lower >= -1e-14 * SIZE)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(), turns, st.lists(fractions, min_size=1, max_size=8))
 def test_a_larger_swing_wipes_out_the_smaller(model, points, wiggles):
     """Whatever happened between two extremes is forgotten when the later one is passed: inner loops close."""
@@ -92,7 +92,7 @@ def test_a_larger_swing_wipes_out_the_smaller(model, points, wiggles):
     assert nearly(model.run(np.array(with_loops))[-3:], model.run(np.array(without))[-3:], SIZE)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(bent=False), turns, turns, fractions, fractions)
 def test_equal_swings_make_congruent_loops(model, past, other, one, two):
     """Without a bent envelope, loops between the same inputs have one shape whatever was before: only their height differs."""
@@ -102,7 +102,7 @@ def test_equal_swings_make_congruent_loops(model, past, other, one, two):
     assert nearly(shapes[0] - shapes[0][0], shapes[1] - shapes[1][0], SIZE)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(), levels)
 def test_closed_loops_dissipate(model, places):
     """The integral of volts over stroke around a periodic input, once settled, is 0 or more."""
@@ -112,7 +112,7 @@ def test_closed_loops_dissipate(model, places):
     assert dissipated >= -1e-13 * SIZE * VOLTS
 
 
-@examples(24, 1000)
+@examples(16)
 @given(st.lists(models(), min_size=1, max_size=6), turns)
 def test_axes_side_by_side_are_the_axes_alone(each, points):
     """Stacked models of unlike sizes, stepped together, give each what it gives alone."""
@@ -121,7 +121,7 @@ def test_axes_side_by_side_are_the_axes_alone(each, points):
         assert nearly(column, model.run(points), SIZE, 1e-14)
 
 
-@examples(24, 1000)
+@examples(16)
 @given(models(), turns)
 def test_steps_are_pure(model, points):
     state = model.start(points[:1])

@@ -40,14 +40,14 @@ def nearly(found, wanted, tolerance=1e-11):
     return np.max(np.abs(np.asarray(found) - wanted), initial=0.0) <= tolerance * SIZE
 
 
-@examples(12, 1000)
+@examples(8)
 @given(plants, turns)
 def test_speed_does_not_matter(plant, points):
     volts, places = walked(points)
     assert nearly(plant.run(volts)[places], plant.run(points))
 
 
-@examples(12, 1000)
+@examples(8)
 @given(plants, turns)
 def test_the_stroke_moves_with_the_volts(plant, points):
     volts, _ = walked(points)
@@ -55,7 +55,7 @@ def test_the_stroke_moves_with_the_volts(plant, points):
     assert np.all(risen >= -1e-12 * SIZE)
 
 
-@examples(12, 1000)
+@examples(8)
 @given(plants, turns)
 def test_steps_are_pure_and_add_up_to_runs(plant, points):
     state, strokes = plant.start(points[:1]), []
@@ -68,7 +68,7 @@ def test_steps_are_pure_and_add_up_to_runs(plant, points):
     assert np.array_equal(strokes, plant.run(points))
 
 
-@examples(10, 300)
+@examples(7)
 @given(bouc_wens(), turns)
 def test_bouc_wen_dissipates(plant, points):
     """Integral of h dv = stored energy gained, h^2/(2 A), and what is lost along any path, which is 0 or more as |gamma| <= beta."""
@@ -79,7 +79,7 @@ def test_bouc_wen_dissipates(plant, points):
     assert supplied - stored >= -1e-4 * SIZE * VOLTS
 
 
-@examples(12, 500)
+@examples(8)
 @given(preisachs(), turns, st.lists(fractions, min_size=1, max_size=8))
 def test_preisach_wipes_out(plant, points, wiggles):
     low, high = np.min(points), np.max(points)
@@ -88,7 +88,7 @@ def test_preisach_wipes_out(plant, points, wiggles):
     assert nearly(plant.run(with_loops)[-3:], plant.run(np.array([*points, low, high, low, high]))[-3:])
 
 
-@examples(12, 500)
+@examples(8)
 @given(preisachs(), turns, turns, fractions, fractions)
 def test_preisach_loops_are_congruent(plant, past, other, one, two):
     low, high = VOLTS * min(one, two), VOLTS * max(one, two)
@@ -97,7 +97,7 @@ def test_preisach_loops_are_congruent(plant, past, other, one, two):
     assert nearly(shapes[0] - shapes[0][0], shapes[1] - shapes[1][0])
 
 
-@examples(12, 500)
+@examples(8)
 @given(preisachs(), levels)
 def test_preisach_loops_dissipate(plant, places):
     volts = on_grid(places)
@@ -105,7 +105,7 @@ def test_preisach_loops_dissipate(plant, places):
     assert -np.sum(0.5 * (strokes[1:] + strokes[:-1]) * np.diff(volts)) >= -1e-12 * SIZE * VOLTS
 
 
-@examples(12, 200)
+@examples(8)
 @given(preisachs(), st.integers(1, 60))
 def test_preisach_remembers_as_much_as_there_is(plant, nested):
     """Extremes nested one in another, more of them than a state has room for at first, are all remembered; noise leaves none behind."""

@@ -53,7 +53,7 @@ def softened(mechanism, stiffness):
     return replace(mechanism, parts=parts)
 
 
-@examples(12, 400)
+@examples(8)
 @given(idle_stages())
 def test_modes_are_those_of_joints_with_less_and_less_stiffness(mechanism):
     """As many modes fall to zero as there are idle freedoms; the others stay, whatever the idle ones weigh."""
@@ -65,7 +65,7 @@ def test_modes_are_those_of_joints_with_less_and_less_stiffness(mechanism):
     assert np.allclose(found, expected[: len(found)], rtol=1e-8)
 
 
-@examples(12, 400)
+@examples(8)
 @given(idle_stages(), turns())
 def test_turning_the_stage_changes_no_frequency(mechanism, move):
     """Which coordinates are named idle follows from the axes; no frequency and no compliance does."""
@@ -78,7 +78,7 @@ def test_turning_the_stage_changes_no_frequency(mechanism, move):
     assert np.allclose(*sizes, rtol=0.0, atol=10.0 * (rounding(still) + rounding(turned)) * sizes[0].max())
 
 
-@examples(12, 400)
+@examples(8)
 @given(idle_stages())
 def test_the_floor_carries_the_platform_along(mechanism):
     """Idle bodies stay behind where only inertia would turn them; the platform follows, and the state space says the same."""
@@ -93,7 +93,7 @@ def test_the_floor_carries_the_platform_along(mechanism):
     assert np.allclose(state_space(model, ports(model, *names), law).transfer(grid), direct, atol=1e-7 * np.abs(direct).max())
 
 
-@examples(12, 400)
+@examples(8)
 @given(idle_stages(), st.data())
 def test_derivatives_are_differences(mechanism, data):
     """Also those through the idle motions, whose directions and inertia change with the design."""
@@ -108,7 +108,7 @@ def test_derivatives_are_differences(mechanism, data):
     assert np.allclose(found.relative_frequency.values[0][alone], slopes[alone], rtol=1e-4, atol=1e-6)
 
 
-@examples(12, 400)
+@examples(8)
 @given(idle_stages())
 def test_what_an_idle_motion_leaves_open_is_refused_by_name(mechanism):
     model = lumped(mechanism)
@@ -129,7 +129,7 @@ def _probe(body, where):
     return Probe("gauge", body, Pose(where, (0.6, 0.0, 0.8), (0.0, 1.0, 0.0)), SensorSense.OPENS)
 
 
-@examples(18, 600)
+@examples(12)
 @given(st.integers(1, 6).flatmap(lambda struts: platforms(6 - struts, struts)), places)
 def test_gauges_on_spinning_struts_read_what_the_hinges_let_them(drawn, where):
     """R_s x of ideal kinematics is the gauges' reading in the lumped model of which only the free freedoms give way."""
@@ -143,7 +143,7 @@ def test_gauges_on_spinning_struts_read_what_the_hinges_let_them(drawn, where):
     assert np.allclose(found, read, rtol=0.0, atol=1e-7 * max(1.0, np.abs(read).max()))
 
 
-@examples(12, 200)
+@examples(8)
 @given(idle_stages(), places)
 def test_gauges_on_struts_that_spin_freely_are_refused_by_name(mechanism, where):
     watched = with_probes(mechanism, where)

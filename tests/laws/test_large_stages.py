@@ -54,7 +54,7 @@ def comparable(matrix):
     return matrix * METRE[:, None] * METRE
 
 
-@examples(12, 1000)
+@examples(8)
 @given(mechanisms())
 def test_stages_without_zeros_have_the_same_statics_and_modes(stage):
     dense, sparse = lumped(stage), sparse_lumped(stage)
@@ -70,7 +70,7 @@ def test_stages_without_zeros_have_the_same_statics_and_modes(stage):
     np.testing.assert_allclose(lowest, every, rtol=1e-9 + 2.0 * rounding(dense))
 
 
-@examples(12, 1000)
+@examples(8)
 @given(mechanisms())
 def test_stages_eliminated_body_by_body_have_the_same_ideal_motions(stage):
     try:
@@ -90,7 +90,7 @@ def test_stages_eliminated_body_by_body_have_the_same_ideal_motions(stage):
         assert np.max(np.abs(one - other), initial=0.0) <= 1e-9 * np.max(np.abs(other), initial=1.0)
 
 
-@examples(12, 1000)
+@examples(8)
 @given(mechanisms())
 def test_load_factors_of_many_freedoms_are_those_of_few(stage):
     try:

@@ -46,7 +46,7 @@ def _panels(low, high, poles):
 
 
 @given(SEEDS)
-@examples(2, 60)
+@examples(2)
 def test_rounding_is_its_integral(seed):
     """A white sequence of variance q has the density 2 q T up to half the sampling rate."""
     closed = stable_loop(seed)
@@ -63,7 +63,7 @@ def test_rounding_is_its_integral(seed):
 
 
 @given(SEEDS)
-@examples(2, 30)
+@examples(2)
 def test_amplifier_noise_is_its_integral(seed):
     """What an amplifier stirs between the samples, by Lyapunov and over all frequencies, those that alias included."""
     closed = stable_loop(seed)

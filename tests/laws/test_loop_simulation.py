@@ -39,7 +39,7 @@ def stepped(found: Machine, size: float, count: int = 1500) -> np.ndarray:
     return reference
 
 
-@examples(8, 100)
+@examples(6)
 @given(SIZES, st.integers(0, 5), st.booleans())
 def test_limits_hold_exactly(size, axis, inverse):
     known = full_loop(inverse=inverse)
@@ -91,7 +91,7 @@ def test_parts_leave_no_trace():
         assert np.max(np.abs(getattr(whole, name) - parted)) <= 1e-13 * np.max(np.abs(getattr(whole, name)))
 
 
-@examples(5, 50)
+@examples(4)
 @given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 def test_linear_loops_add_up(one, other):
     known = without_limits(full_loop())

@@ -64,7 +64,7 @@ def _exact(stage, time):
 
 
 @given(SEEDS, LAGGED)
-@examples(5, 100)
+@examples(4)
 def test_verdict_is_what_happens(seed, lagged):
     closed = random_loop(seed, lagged=lagged)
     found = verdict(closed)
@@ -96,7 +96,7 @@ def _encirclements(system, radius):
 
 
 @given(SEEDS, LAGGED)
-@examples(8, 200)
+@examples(6)
 def test_verdict_is_nyquists_count(seed, lagged):
     """Poles outside the circle: those of the open loop less the turns of det(I + L); the integrators are kept inside."""
     closed = random_loop(seed, lagged=lagged)
@@ -110,7 +110,7 @@ def test_verdict_is_nyquists_count(seed, lagged):
 
 
 @given(SEEDS, st.sampled_from([1000.0, None]))
-@examples(7, 200)
+@examples(5)
 def test_sensitivities_add_up(seed, rate):
     """S + T = I between reference and error, and S = (I + L)^-1; both cuts have the same determinant of I + L."""
     closed = random_loop(seed, rate=rate)
@@ -137,7 +137,7 @@ def _scaled(closed, cut, channel, factor):
 
 
 @given(SEEDS, st.sampled_from([1000.0, None]), st.sampled_from(list(LoopBreak)))
-@examples(4, 150)
+@examples(3)
 def test_margins_end_at_the_edge(seed, rate, cut):
     """One loop's gain multiplied by a margin has a pole on the edge at the stated frequency; between the margins it decays."""
     closed = stable_loop(seed, rate=rate)
@@ -158,7 +158,7 @@ def test_margins_end_at_the_edge(seed, rate, cut):
 
 
 @given(SEEDS)
-@examples(7, 200)
+@examples(5)
 def test_gain_of_all_ends_at_the_edge(seed):
     closed = random_loop(seed)
     found = verdict(closed)
@@ -178,7 +178,7 @@ def test_gain_of_all_ends_at_the_edge(seed):
 
 
 @given(SEEDS, st.sampled_from([1000.0, None]))
-@examples(1, 60)
+@examples(1)
 def test_disk_margins_hold(seed, rate):
     """Of all loops <= of one alone <= what gain and phase alone allow; loops within the guaranteed gains are stable, all at random."""
     closed = stable_loop(seed, rate=rate)
@@ -204,7 +204,7 @@ def test_disk_margins_hold(seed, rate):
 
 
 @given(SEEDS, st.sampled_from([1000.0, None]))
-@examples(5, 200)
+@examples(4)
 def test_peaks_are_the_highest(seed, rate):
     """No frequency of a grid shows more than the norms of S and T, and their own shows them; a radian counts as a tenth of a metre."""
     closed = stable_loop(seed, rate=rate, coordinates=3)

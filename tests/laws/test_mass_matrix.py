@@ -42,7 +42,7 @@ def in_metres(matrix):
 
 
 @given(platforms())
-@examples(4, 150)
+@examples(3)
 def test_the_mass_at_a_point_is_that_at_the_reference_carried_there(drawn):
     stage = with_point(drawn[0])
     model = lumped(stage)
@@ -66,7 +66,7 @@ def test_a_payload_turns_with_its_own_inertia():
 
 
 @given(platforms())
-@examples(8, 150)
+@examples(6)
 def test_a_rigid_motion_has_the_kinetic_energy_of_its_masses(drawn):
     stage = with_point(drawn[0])
     found = mass_matrix(stage, lumped(stage), point="chuck").rigid.values
@@ -78,7 +78,7 @@ def test_a_rigid_motion_has_the_kinetic_energy_of_its_masses(drawn):
 
 
 @given(platforms())
-@examples(8, 100)
+@examples(6)
 def test_the_reduced_mass_is_the_energy_of_the_motion_of_least_strain(drawn):
     stage = with_point(drawn[0])
     model = lumped(stage)
@@ -92,7 +92,7 @@ def test_the_reduced_mass_is_the_energy_of_the_motion_of_least_strain(drawn):
 
 
 @given(platforms())
-@examples(8, 100)
+@examples(6)
 def test_reduced_masses_give_frequencies_that_are_never_below_those_of_the_whole(drawn):
     stage = with_point(drawn[0])
     model = lumped(stage)

@@ -177,7 +177,7 @@ def test_moving_an_elastic_stage_changes_only_frames(mechanism, move):
     assert np.all(np.abs(difference) <= rounding_per_stroke(here, here.output[here.output_index(gauges)]))
 
 
-@examples(12, 200)
+@examples(8)
 @given(mechanisms(), turns())
 def test_moving_a_loaded_stage_leaves_its_load_factors(mechanism, move):
     """Gravity turns with the stage; the shares of stiffness that its loads take or add, against the largest of them."""

@@ -58,7 +58,7 @@ def by_hand(lower, upper, turn, shift):
     )
 
 
-@examples(10, 300)
+@examples(7)
 @given(mechanisms(), mechanisms(), turns())
 def test_a_stage_on_a_stage_is_both_drawn_in_one_piece(lower, upper, where):
     both = mount(mount(Mechanism("both"), "z", lower, platform=False), "fine", upper, on="z/platform", pose=pose_of(*where))

@@ -101,7 +101,7 @@ def test_every_search_ends_in_an_equilibrium_or_says_why_not():
 
 @pytest.mark.full
 def test_every_one_of_many_searches_ends_in_an_equilibrium_or_says_why_not():
-    ends(200, 25, 0.95)
+    ends(60, 25, 0.95)
 
 
 def followed(model: Nonlinear, wrench: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -116,7 +116,7 @@ def followed(model: Nonlinear, wrench: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return last.twist(), firm
 
 
-@pytest.mark.parametrize("models", [pytest.param(40, marks=pytest.mark.full), 2])
+@pytest.mark.parametrize("models", [pytest.param(20, marks=pytest.mark.full), 2])
 def test_what_is_stable_is_where_small_steps_of_load_lead(models: int):
     """One step may find another equilibrium than loading by and by does; then that one is not stable, and is told so."""
     same = 0

@@ -76,7 +76,7 @@ def grouped(mechanism, turn, shift):
     )
 
 
-@examples(8, 1000)
+@examples(6)
 @given(mechanisms(), turns())
 def test_links_may_join_bodies_of_placed_copies(mechanism, where):
     stage = grouped(mechanism, *where)
@@ -122,7 +122,7 @@ def reflected(body, axis):
     return replace(body, centre=point(body.centre), reference=point(body.reference), inertia=inertia)
 
 
-@examples(8, 1000)
+@examples(6)
 @given(mechanisms(), turns(), st.sampled_from(Normal))
 def test_a_mirrored_stage_has_the_reflected_matrices(mechanism, where, normal):
     axis = "xyz".index(normal.value)
@@ -313,7 +313,7 @@ def test_bodies_of_the_other_unit_are_addressed_there():
         get(likened(), "outer/shoe.mass")
 
 
-@examples(10, 300)
+@examples(7)
 @given(mechanisms())
 def test_a_link_may_be_given_by_its_ends(mechanism):
     def by_ends(link):

@@ -42,7 +42,7 @@ def study(moved, *, designs=8, seed=0, stage=STAGE, keys=("frequency.platform.1"
     return Study("law", stage, variables, asked, (), Plan(Sampling.MONTE_CARLO, len(moved), count=designs, seed=seed))
 
 
-@examples(3, 20)
+@examples(2)
 @given(st.lists(st.sampled_from(MOVED), min_size=1, max_size=4, unique=True), st.integers(0, 99))
 def test_frequencies_are_those_of_dense_matrices(moved, seed):
     asked = study(moved, seed=seed)

@@ -297,10 +297,23 @@ def test_volts_of_a_stack_that_reaches_farther_move_the_stage_farther():
     np.testing.assert_allclose(found, wanted, atol=1e-9 * np.abs(wanted).max())
 
 
-@pytest.mark.parametrize("shape", [Distribution(Shape.NORMAL, 2.0), Distribution(Shape.NORMAL, 2.0, 3.0), Distribution(Shape.UNIFORM, 2.0)])
+def test_an_asymmetric_tolerance_shifts_the_mean(guide):
+    """Between limits a and b the mean deviation is (a + b) / 2."""
+    for text, spread in (("", 6.0 / 12.0**0.5), ('normal = "1 um", ', Distribution(Shape.NORMAL, 1.0, 3.0).deviation)):
+        study = guide(f'scatter.w = {{ address = "leaf.thickness", {text}limits = ["-1 um", "5 um"] }}', copies=512)
+        values = piece(study, 0, 512).variables[:, 0]
+        assert values.min() >= -1e-6
+        assert values.max() <= 5e-6
+        assert values.mean() == pytest.approx(2e-6, rel=0.01)
+        assert values.std() == pytest.approx(spread * 1e-6, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "shape", [Distribution(Shape.NORMAL, 2.0), Distribution(Shape.NORMAL, 2.0, 3.0), Distribution(Shape.UNIFORM, 2.0, offset=1.0)]
+)
 def test_distributions_have_the_deviation_they_say(shape):
     values = shape.quantile((np.arange(20000) + 0.5) / 20000)
-    assert values.mean() == pytest.approx(0.0, abs=1e-9)
+    assert values.mean() == pytest.approx(shape.offset, abs=1e-9)
     assert values.std() == pytest.approx(shape.deviation, rel=2e-3)
     assert shape.largest is None or np.abs(values).max() <= shape.largest
     assert shape.times(3.0).deviation == pytest.approx(3.0 * shape.deviation, rel=1e-12)
@@ -357,6 +370,9 @@ BAD = {
     'w = { address = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "they are of different quantities",
     'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
     'w = { address = "stacks.stroke", normal = "1 %" }': "the design has none of this kind",
+    'w = { address = "leaf.thickness", limits = ["5 um", "-1 um"] }': "the lower limit is not below the upper one",
+    'w = { address = "leaf.thickness", uniform = "5 um", limits = ["-1 um", "5 um"] }': "the limits are stated twice",
+    'w = { address = "leaf.thickness", limits = ["-1 um", "5 %"] }': "one is relative (%), the other not",
     'w = { address = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
 }
 

@@ -50,7 +50,7 @@ def plants(draw) -> tuple[Plant, Loops]:
     return one, draw(st.sampled_from(kinds))
 
 
-@examples(7, 200)
+@examples(5)
 @given(case=plants(), kind=st.sampled_from(list(FAMILIES.values())), part=st.sampled_from([0.005, 0.05, 0.3, 0.8]))
 def test_what_is_judged_reached_is_reached(case, kind, part):
     """Eigenvalues with hold and delay, the gain of each loop at the frequency, the exact peak of S; judgements of others are right too."""

@@ -59,7 +59,7 @@ def test_single_strokes_end_at_an_actuators_end(drawn):
         np.testing.assert_allclose(strokes[row], edge, rtol=1e-9), name
 
 
-@examples(30, 1000)
+@examples(20)
 @given(maps(), seeds)
 def test_polytope_is_what_its_half_spaces_say(drawn, seed):
     mapping, limits = drawn
@@ -79,7 +79,7 @@ def test_polytope_is_what_its_half_spaces_say(drawn, seed):
     np.testing.assert_array_equal(found.contains(poses), inside)
 
 
-@examples(15, 500)
+@examples(10)
 @given(maps(most=6))
 def test_polytope_volume_and_extent_by_both_methods(drawn):
     """As many strokes as coordinates: the parallelotope's formula against crossings of faces with one stroke stated twice."""
@@ -136,7 +136,7 @@ def test_forces_of_the_description_act_as_wrenches_do(mechanism, seed):
     np.testing.assert_allclose(found.loads.values[:, push], found.under(np.array(force), np.array(at)), rtol=0.0, atol=1e-9 * scale)
 
 
-@examples(18, 600)
+@examples(12)
 @given(actuated_platforms(), seeds)
 def test_an_eccentric_payload_is_its_weight_at_its_place(mechanism, seed):
     random = np.random.default_rng(seed)
@@ -152,7 +152,7 @@ def test_an_eccentric_payload_is_its_weight_at_its_place(mechanism, seed):
     )
 
 
-@examples(18, 600)
+@examples(12)
 @given(actuated_platforms(), seeds)
 def test_no_stroke_inside_the_box_stresses_more_than_its_corners(mechanism, seed):
     model, limits, assembly = lumped(mechanism), stroke_limits(mechanism), expand(mechanism)
@@ -195,7 +195,7 @@ def test_gauge_inverse_returns_the_motion(mechanism):
     assert np.all(found.rms <= found.worst * (1.0 + 1e-12))
 
 
-@examples(18, 600)
+@examples(12)
 @given(actuated_platforms(), seeds)
 def test_gauge_swing_is_the_worst_corner_and_the_radius_its_limit(mechanism, seed):
     kinematics = ideal(mechanism)
@@ -241,7 +241,7 @@ def test_map_error_is_worst_where_it_says(name):
     assert np.all(inside.worst <= found.worst + 1e-12)
 
 
-@examples(18, 600)
+@examples(12)
 @given(mechanisms())
 def test_weight_is_carried(mechanism):
     """Gravity turned round turns all dead loads round; twice the weight doubles them."""

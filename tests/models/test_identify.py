@@ -34,7 +34,7 @@ from tests.models.wrong_models import (
 )
 from tests.models.wrong_models import blow as blow_once
 
-SEEDS = 200 if FULL else 2
+SEEDS = 100 if FULL else 2
 
 
 @cache

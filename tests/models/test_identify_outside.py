@@ -16,7 +16,7 @@ from flexstage.experiment.records.record import InMemory, Record
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
 
-SEEDS = 100 if FULL else 1
+SEEDS = 20 if FULL else 1
 LEVELS = (1.0, 3.0, 10.0)
 
 
@@ -116,7 +116,7 @@ def test_an_oscillation_that_fades_stays() -> None:
     np.testing.assert_array_equal(quiet.values, values)
 
 
-@pytest.mark.parametrize("seed", [1, 3, 7, *range(20, 20 + SEEDS)] if FULL else [34])
+@pytest.mark.parametrize("seed", [1, 3, 7, 34, 57, 110, 111, *range(20, 20 + SEEDS // 2)] if FULL else [34])
 def test_a_drive_that_is_not_recorded_gives_no_mode_and_hides_none(seed: int) -> None:
     """All six are found and nothing else is hinted at; of seeds 34 and 111 one was 0.5 % off, of seed 57 one was missed once."""
     known = truth(seed=1000 + seed)

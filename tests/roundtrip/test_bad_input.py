@@ -109,7 +109,7 @@ def polygon(*corners: str) -> str:
         ('"30 mm"', '"1e-300 mm"', ["parts.wire.length", "1e-300 mm", "nothing that is made", "exponent"]),
         ('along = "z"', "along = [0, 0, 1e-200]", ["along", "of length 1e-200"]),
         ('along = "z"', "along = [0, 0, 1e200]", ["along", "of length 1e+200"]),
-        ('"0 deg"', '"0"', ["placements.L1-L3.polar.first", "without a unit", "deg"]),
+        ('"0 deg"', '"1"', ["placements.L1-L3.polar.first", "without a unit", "deg"]),
         ('"0 deg"', '"0 mm"', ["placements.L1-L3.polar.first", "a length", "an angle"]),
         ('facing = "tangent"', 'facing = "tangential"', ["polar.facing", '"tangential"', "tangent, outward"]),
         ('along = "z"', 'along = "up"', ["along", '"up"', "-z"]),
@@ -119,12 +119,12 @@ def polygon(*corners: str) -> str:
         ('along = "z"', 'along = "z", bends = [1, 0, 1]', ["bends", "45 deg", "90 deg"]),
         ('along = "z"', 'along = "z", free = ["x", "q"]', ["free", '"q"', "rx"]),
         ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm"]', ["front.at", "2 values", "3 values"]),
-        ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm", 0]', ["front.at.z", "found 0 without a unit"]),
+        ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm", 1]', ["front.at.z", "found 1 without a unit"]),
         # provenance
         ('"stated paper 2"', '"published"', ['tags."parts.wire.length"', '"published"', "stated, derived or assumed"]),
         ('"stated paper 2"', '"stated papre 2"', ['tags."parts.wire.length"', '"papre"', "paper"]),
         ("tags = { length =", "tags = { lenght =", ['tags."parts.wire.lenght"', "points nowhere", "length"]),
-        ("tags = { length =", "tags = { length = 1, x =", ["parts.wire.tags", "no tags"]),
+        ("tags = { length =", "tags = { length = 1, x =", ["parts.wire.tags", "a tag is a text"]),
         # the file
         ('format = "flexstage 1"', 'format = "flexstage 9"', ["format", '"flexstage 9"', '"flexstage 1"']),
         ('format = "flexstage 1"', "", ["format", "does not say", '"flexstage 1"']),
@@ -168,10 +168,61 @@ def test_overrides_are_checked_like_the_rest(text: str, words: list[str]) -> Non
 
 
 def test_everything_wrong_is_told_at_once() -> None:
-    text = TEXT.replace('"30 mm"', "30").replace('"1 mm"\n', '"1 kg"\n').replace('"0 deg"', '"0"').replace("mass =", "mas =")
+    text = TEXT.replace('"30 mm"', "30").replace('"1 mm"\n', '"1 kg"\n').replace('"0 deg"', '"1"').replace("mass =", "mas =")
     where = [tuple(line.split(": ")[1:3]) for line in told(text)]
     numbers = {"parts.wire.length": 14, "parts.wire.diameter": 15, "bodies.platform.mas": 19, "placements.L1-L3.polar.first": 25}
     assert where == [(f"line {number}", address) for address, number in numbers.items()]
+
+
+def test_wrong_values_do_not_hide_unknown_names() -> None:
+    lines = told(TEXT.replace('"30 mm"', "30").replace('part = "wire"', 'part = "wirr"').replace('"steel"', '"stel"'))
+    assert ["without a unit" in lines[0], *sorted(line.split("no ")[1].split(" ")[0] for line in lines[1:])] == [True, "material", "part"]
+
+
+def test_zero_needs_no_unit_and_keys_with_dots_no_quotes() -> None:
+    plain = TEXT + '[requirements]\n"stroke.x" = "at least 0 um"\n'
+    short = TEXT.replace('"0 mm"', "0").replace('"0 deg"', '"0"') + '[requirements]\nstroke.x = "at least 0"\n'
+    assert loads(short).placements == loads(plain).placements
+    assert list(loads(short).requirements) == ["stroke.x"]
+
+
+@pytest.mark.parametrize("name", ["T", "H", "m", "bar"])
+def test_a_number_may_have_the_name_of_a_unit(name: str) -> None:
+    text = TEXT.replace('"30 mm"', f'"2*{name}"').replace("[materials.steel]", f'[numbers]\n{name} = "15 mm"\n\n[materials.steel]')
+    assert loads(text).parts["wire"].length == 0.03
+
+
+CATALOGUE = """
+[sources]
+lot = "tensile test"
+[materials.ours]
+young = "71.2 GPa"
+poisson = 0.33
+density = "2810 kg/m^3"
+tags = { young = "stated lot" }
+[coils.small]
+force_constant = "12 N/A"
+"""
+
+
+def test_entries_of_a_catalogue_of_ones_own(tmp_path: Path) -> None:
+    head = 'format = "flexstage 1"\nname = "a"\ncatalogue = "lab.toml"\n'
+    design = head + 'materials.al.like = "ours"\nmaterials.steel.like = "17-4PH"\nparts.coil.like = "small"\n'
+    (tmp_path / "lab.toml").write_text(CATALOGUE)
+    stage = loads(design, checked=False, folder=tmp_path)
+    assert stage.materials["al"].young == 71.2e9
+    assert stage.parts["coil"].kind == "voice_coil"
+    assert stage.sources["lot"] == "tensile test"
+    for name, text, words in (
+        ("no.toml", CATALOGUE, "there is no such file"),
+        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: this is no section of entries by name. The nearest name is coils."),
+        ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: this is no section"),
+        ("lab.toml", CATALOGUE.replace("ours", "theirs"), 'the catalogue has no "ours"'),
+        ("lab.toml", CATALOGUE.replace("71.2 GPa", "71.2 N"), "materials.al.young"),
+    ):
+        (tmp_path / "lab.toml").write_text(text)
+        with pytest.raises(DesignError, match=re.escape(words)):
+            loads(design.replace("lab.toml", name), checked=False, folder=tmp_path)
 
 
 def test_a_flood_of_mistakes_is_cut_short() -> None:
@@ -417,7 +468,8 @@ NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "long"')
         ('"15 mm"', '"15 furlong"', ["numbers.arm", '"furlong" is not a known unit']),
         ('"15 mm"', '["15 mm"]', ["numbers.arm", "no number", "26 mm"]),
         ('"15 mm"', '"sqrt(sqrt(2 m))"', ["numbers.arm", "m^0.25"]),
-        ("lean =", "t =", ["numbers.t", "t is a unit", "t_1"]),
+        ('"2*arm"', '"2 arm"', ["numbers.long", "not a known unit"]),
+        ("lean =", 'mm = "1 mm"\nlean =', ["parts.wire.diameter", '"mm" is a unit and a named number', "mm_1"]),
         ("lean =", "sin =", ["numbers.sin", "meaning of its own"]),
         ("lean =", '"a-b" =', ["numbers.a-b", "letters, digits"]),
         ("[numbers]", "[number]", ["number:", "not known", "numbers"]),

@@ -38,7 +38,7 @@ def as_made(model):
     return replace(model, weights=weights, before=Envelope(*tables[:2]), after=Envelope(*tables[2:]))
 
 
-@examples(30, 500)
+@examples(20)
 @given(models(least=-0.9), st.floats(-0.1, 0.1), st.floats(1e-3, 10.0))
 def test_files_keep_every_bit(model, rate, reference):
     model, rate = as_made(model), round(rate, 9)

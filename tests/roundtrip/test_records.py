@@ -81,7 +81,7 @@ def test_a_single_output_and_input(form: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(found.values, single.values, rtol=1e-11)
 
 
-@examples(30, 2000)
+@examples(20)
 @given(length=st.integers(2, 41), channels=st.integers(1, 3), form=st.sampled_from(list(SUFFIX)), data=st.data())
 def test_any_part_is_read_as_it_stands_in_the_whole(
     length: int, channels: int, form: str, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory

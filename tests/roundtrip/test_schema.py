@@ -101,7 +101,7 @@ def test_shipped_cases_fit(name: str) -> None:
     assert fits(dumps(CASES[name].build()))
 
 
-@examples(8, 400)
+@examples(6)
 @given(mechanisms())
 def test_any_description_fits_but_for_its_bounds(mechanism: Mechanism) -> None:
     assert fits(dumps(mechanism), UNBOUNDED)
@@ -128,7 +128,6 @@ UNBOUNDED = without_bounds(SCHEMA)
         ("diameter =", "diametre ="),
         ('kind = "rod"\n', ""),
         ('kind = "rod"', 'kind = "rodd"'),
-        ('like = "SUS420"', 'like = "SUS430"'),
         ('facing = "tangent"', 'facing = "tangential"'),
         ('along = "z"', 'along = "up"'),
         ('along = "z"', "along = [0, 0]"),

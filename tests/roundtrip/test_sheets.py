@@ -136,7 +136,7 @@ def test_a_workbook_has_the_cells_of_the_csv_files_and_units_below_its_heads(los
 
 
 @given(st.dictionaries(NAMES, DOCUMENTS, max_size=4))
-@examples(12, 300)
+@examples(8)
 def test_no_number_of_a_document_is_lost_in_its_workbook(document: dict[str, object]) -> None:
     heads = [values for _, part in parts(document) if isinstance(part, Sheet) for values in part.heads.values()]
     written = [float(each) for values in heads for each in values if isinstance(each, (int, float)) and not isinstance(each, bool)]

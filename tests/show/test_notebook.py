@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -45,6 +46,37 @@ def test_a_result_without_tables_of_its_own_shows_all_its_parts() -> None:
     assert "frequency" in identified
     assert "duration" in record._repr_html_()
     assert "rms" in fs.experiment.examine(record)._repr_html_()
+
+
+ANALYSED = fs.analyse(STAGE)
+STATE = fs.equilibrium(fs.nonlinear(STAGE))
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        STAGE,
+        KINEMATICS,
+        MODEL,
+        STATE,
+        STATE.model,
+        ANALYSED,
+        *(getattr(ANALYSED, name) for name in ("modes", "statics", "workspace", "drift")),
+    ],
+    ids=lambda result: type(result).__name__,
+)
+def test_printed_results_have_at_most_25_lines(result: InNotebook) -> None:
+    lines = str(result).splitlines()
+    assert 3 < len(lines) <= 25
+    assert max(map(len, lines)) <= 140
+
+
+def test_check_returns_the_errors_or_the_warnings_of_the_command() -> None:
+    leaf = replace(STAGE.parts["leaf"], thickness=0.4, width=0.5, length=4.0)
+    broken, thick = replace(STAGE, materials={}), replace(STAGE, parts={**STAGE.parts, "leaf": leaf}, formulas={})
+    assert {each.severity.value for each in fs.check(broken)} == {"error"}
+    assert "parts.leaf.thickness" in {each.where for each in fs.check(thick) if each.severity.value == "warning"}
+    assert fs.check(STAGE) == ()
 
 
 def test_a_stage_shows_its_picture() -> None:

@@ -49,7 +49,7 @@ def flux(skin: DrawnSurface) -> Array:
     return 0.5 * np.sum(np.cross(b - a, c - a), axis=0)
 
 
-@examples(18, 600)
+@examples(12)
 @given(BOXES)
 def test_the_nearest_triangle_is_the_one_that_a_ray_meets_first(boxes: list[DrawnSurface]) -> None:
     """Of all pixels whose ray does not pass within a hair of an edge."""
@@ -72,7 +72,7 @@ def test_the_nearest_triangle_is_the_one_that_a_ray_meets_first(boxes: list[Draw
     assert np.allclose(depth[seen], met[seen], rtol=0.0, atol=1e-3)
 
 
-@examples(18, 600)
+@examples(12)
 @given(BOXES)
 def test_solids_are_closed_and_face_outward(boxes: list[DrawnSurface]) -> None:
     for skin in boxes:

@@ -96,7 +96,7 @@ def test_every_link_outline_and_gauge_is_a_part_that_is_drawn(name: str) -> None
     assert np.all(np.bincount(shown.mesh.triangles.ravel(), minlength=len(shown.mesh.points))[np.unique(shown.mesh.triangles)] > 0)
 
 
-@examples(3, 200)
+@examples(2)
 @given(mechanisms.fresh())
 def test_random_stages_move_as_one_and_follow_their_bodies(mechanism: Mechanism) -> None:
     shown = stage_data(mechanism, count=3)

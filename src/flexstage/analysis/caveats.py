@@ -21,7 +21,7 @@ from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
-from flexstage.base.finding import DesignError, Finding
+from flexstage.base.finding import DesignError, DesignWarning, Finding
 from flexstage.base.number import stack
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER
@@ -31,6 +31,7 @@ from flexstage.base.units.unit import show
 from flexstage.beams.mass import mass
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.assembly.expansion import ground_of
+from flexstage.mechanism.checks import check as find_errors
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.mechanism.geometry.outline import outlines
@@ -340,6 +341,21 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
         except DesignError as error:
             found += error.findings
     return tuple(dict.fromkeys([*found, *path_findings(mechanism)]))
+
+
+def check(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Check a stage: return its errors, or its warnings if there is no error, as `flexstage check` lists them.
+
+    `severity` of a finding distinguishes them. An empty tuple means that the stage has neither.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> check(double_triangle())
+    ()
+    >>> [finding.severity.value for finding in check(Mechanism("empty"))]
+    ['error']
+    """
+    errors = find_errors(mechanism) or model_findings(mechanism)
+    return errors or tuple(DesignWarning(each.where, each.what, each.advice) for each in caveats(mechanism).warnings)
 
 
 def part_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -34,6 +34,7 @@ from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.arguments import check_arguments
 from flexstage.base.lazy import Late
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Table
 from flexstage.base.processes.threads import one_thread
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -56,7 +57,7 @@ _UNLUMPED = "this needs the lumped model"
 
 
 @dataclass(frozen=True, eq=False)
-class Analysis:
+class Analysis(InNotebook):
     """All results of one model of a stage; `None` where a model or a stage does not give them, and `missing` says why, by field name.
 
     `response` is that of the platform's twist and all gauges to the actuators' inputs, `transmissibility` that of the platform to the

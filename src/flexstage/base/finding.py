@@ -8,9 +8,17 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from enum import Enum
+from typing import Any, ClassVar
 
 from flexstage.base.renamed import new_name
+
+
+class Severity(Enum):
+    """Severity of a finding: an error prevents results, a warning does not."""
+
+    ERROR = "error"
+    WARNING = "warning"
 
 
 @dataclass(frozen=True)
@@ -20,9 +28,17 @@ class Finding:
     where: str
     what: str
     advice: str
+    severity: ClassVar[Severity] = Severity.ERROR
 
     def __str__(self) -> str:
         return f"{self.where}: {self.what}. {self.advice}."
+
+
+@dataclass(frozen=True)
+class DesignWarning(Finding):
+    """A doubtful value or result, which prevents nothing."""
+
+    severity = Severity.WARNING
 
 
 class DesignError(ValueError):

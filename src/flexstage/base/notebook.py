@@ -11,7 +11,7 @@ from flexstage.base.lazy import Late
 class RenderHook:
     """The modules that show values, offered by `flexstage` itself when it is imported and loaded when a value is shown.
 
-    `tables` has `to_html(value)`, `views` has `view(mechanism, *, motion)`.
+    `tables` has `to_html(value)` and `to_text(value)`, `views` has `view(mechanism, *, motion)`.
     """
 
     tables: Late
@@ -19,7 +19,7 @@ class RenderHook:
 
 
 class InNotebook:
-    """A value that notebooks show as the renderer lays it out.
+    """A value that prints in at most 25 lines, and that notebooks show as tables or a picture.
 
     >>> import numpy as np
     >>> from flexstage.base.labelled import Matrix
@@ -29,6 +29,9 @@ class InNotebook:
 
     def _repr_html_(self) -> str:
         return RenderHook.tables.to_html(self)
+
+    def __str__(self) -> str:
+        return RenderHook.tables.to_text(self)
 
 
 @dataclass_transform(eq_default=False, frozen_default=True, field_specifiers=(field,))

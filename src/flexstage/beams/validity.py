@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.base.finding import Finding
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, Table
 from flexstage.beams.compliance import compliance, law_of
 from flexstage.beams.elasticity import AXES, LAWS, HingeDimensions
@@ -25,7 +26,7 @@ _Bounds = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Validity:
+class Validity(InNotebook):
     """Ranges of a part, the signed relative `errors` of its compliance by component (-0.1: 10 % too stiff), and `findings`.
 
     A component without an error, or with NaN in a batch, was not compared with elasticity.

@@ -1,23 +1,27 @@
-"""The shipped catalogue: materials, piezo stacks and gauges, each number with its source."""
+"""Catalogues of materials, actuators and sensors, each number with its source: the shipped one, and files of users."""
 
 from __future__ import annotations
 
 import functools
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from typing import Any
 
+from flexstage.parts.amplified import Amplified
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
+from flexstage.parts.voice_coil import VoiceCoil
 
 
 @dataclass(frozen=True)
 class Section:
-    """Entries of one class by name, as tables of a design file under `key`; `kind` tells the class apart where the file needs that."""
+    """Entries of one class by name, as tables of a design file under `key`; `kind` is the part's kind, None outside of `parts`."""
 
+    name: str
+    title: str
     key: str
     record: type
     kind: str | None
@@ -35,32 +39,41 @@ class Catalogue:
         """The section of a class, if there is any."""
         return next((section for section in self.sections if section.record is record), None)
 
+    def extended(self, raw: Mapping[str, Any]) -> Catalogue:
+        """The catalogue with the entries of another one's tree, which take precedence.
+
+        >>> found = Catalogue((), {}).extended({"materials": {"ours": {"young": "200 GPa"}}})
+        >>> list(found.section(Material).entries)
+        ['ours']
+        """
+        known = {section.name: section.entries for section in self.sections}
+        return Catalogue(
+            tuple(replace(each, entries={**known.get(each.name, {}), **raw.get(each.name, {})}) for each in SECTIONS),
+            {**self.sources, **raw.get("sources", {})},
+        )
+
     def sources_of(self, tags: Iterable[str]) -> dict[str, str]:
         """The sources that tags (`stated key place`) name."""
         keys = {word for tag in tags for word in tag.split()[1:2]}
         return {key: text for key, text in self.sources.items() if key in keys}
 
 
+SECTIONS = (
+    Section("materials", "Materials", "materials", Material, None, {}),
+    Section("stacks", "Piezo stacks", "parts", Piezo, "piezo", {}),
+    Section("amplified", "Amplified piezo actuators", "parts", Amplified, "amplified", {}),
+    Section("coils", "Voice coils", "parts", VoiceCoil, "voice_coil", {}),
+    Section("gauges", "Displacement sensors", "sensors", Gauge, None, {}),
+)
+"""The sections of a catalogue, without entries."""
+
+
 @functools.cache
 def shipped_catalogue() -> Catalogue:
-    """The catalogue that comes with the package.
+    """Return the catalogue that comes with the package.
 
     >>> "SUS420" in shipped_catalogue().section(Material).entries
     True
     """
     text = resources.files("flexstage.mechanism").joinpath("catalogue.toml").read_text(encoding="utf-8")
-    return catalogue_from(tomllib.loads(text))
-
-
-def catalogue_from(raw: Mapping[str, Any]) -> Catalogue:
-    """A catalogue from its tree: tables `materials`, `stacks`, `gauges` and `sources`.
-
-    >>> catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}).section(Material).entries["steel"]["young"]
-    '200 GPa'
-    """
-    sections = (
-        Section("materials", Material, None, raw.get("materials", {})),
-        Section("parts", Piezo, "piezo", raw.get("stacks", {})),
-        Section("sensors", Gauge, None, raw.get("gauges", {})),
-    )
-    return Catalogue(sections, raw.get("sources", {}))
+    return Catalogue((), {}).extended(tomllib.loads(text))

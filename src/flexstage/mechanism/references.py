@@ -35,7 +35,10 @@ def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
     """
     if isinstance(value, Mapping):
         for name, item in value.items():
-            yield from references(item, f"{where}.{name}")
+            if isinstance(item, str) and name in SECTIONS and name != "like":
+                yield f"{where}.{name}", SECTIONS[name], item
+            else:
+                yield from references(item, f"{where}.{name}")
     elif isinstance(value, Description):
         for name in (each.name for each in fields(value)):  # type: ignore[arg-type]
             item = getattr(value, name)

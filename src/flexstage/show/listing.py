@@ -11,13 +11,7 @@ from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.catalogue import Catalogue, Section
 from flexstage.mechanism.grammar.grammar import TAGS
-from flexstage.parts.gauge import Gauge
-from flexstage.parts.material import Material
-from flexstage.parts.piezo import Piezo
 from flexstage.show.table import Cell, Mark, Table, make_table, text_table
-
-_SECTIONS: Mapping[type, str] = {Material: "materials", Piezo: "stacks", Gauge: "gauges"}
-_TITLES: Mapping[type, str] = {Material: "Materials", Piezo: "Piezo stacks", Gauge: "Gauges"}
 
 
 def case_table() -> Table | None:
@@ -42,35 +36,35 @@ def parameter_table(name: str) -> Table | None:
 
 
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
-    """Materials, stacks and gauges: every number as it would stand in a design file, with its source.
+    """Materials, actuators and sensors: every number as in a design file, with its source.
 
-    >>> from flexstage.mechanism.catalogue import catalogue_from
-    >>> catalogue_tables(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]
+    >>> from flexstage.mechanism.catalogue import Catalogue
+    >>> catalogue_tables(Catalogue((), {}).extended({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]
     ['steel', '200 GPa']
     """
     return tuple(_section_table(section, catalogue.sources) for section in catalogue.sections if section.entries)
 
 
 def find_section(catalogue: Catalogue, name: str) -> Catalogue:
-    """The catalogue with one section only: `materials`, `stacks` or `gauges`. Raises `DesignError` for another name.
+    """The catalogue with one section only, such as `materials` or `coils`. Raises `DesignError` for another name.
 
     >>> from flexstage.mechanism.catalogue import shipped_catalogue
     >>> [section.record.__name__ for section in find_section(shipped_catalogue(), "gauges").sections]
     ['Gauge']
     """
-    if name not in _SECTIONS.values():
-        raise refuse(name, "the catalogue has no such section", suggest_nearest(name, _SECTIONS.values()))
-    return replace(catalogue, sections=tuple(section for section in catalogue.sections if _SECTIONS[section.record] == name))
+    if name not in (names := [section.name for section in catalogue.sections]):
+        raise refuse(name, "the catalogue has no such section", suggest_nearest(name, names))
+    return replace(catalogue, sections=tuple(section for section in catalogue.sections if section.name == name))
 
 
 def catalogue_body(catalogue: Catalogue) -> dict[str, Any]:
     """The catalogue as plain values: section, entry, and its values as they would stand in a design file; and the sources.
 
-    >>> from flexstage.mechanism.catalogue import catalogue_from
-    >>> catalogue_body(catalogue_from({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]
+    >>> from flexstage.mechanism.catalogue import Catalogue
+    >>> catalogue_body(Catalogue((), {}).extended({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]
     {'steel': {'young': '200 GPa'}}
     """
-    return {**{_SECTIONS[section.record]: dict(section.entries) for section in catalogue.sections}, "sources": dict(catalogue.sources)}
+    return {**{section.name: dict(section.entries) for section in catalogue.sections}, "sources": dict(catalogue.sources)}
 
 
 def _section_table(section: Section, sources: Mapping[str, str]) -> Table:
@@ -79,7 +73,7 @@ def _section_table(section: Section, sources: Mapping[str, str]) -> Table:
     tags = [tag for entry in section.entries.values() for tag in entry.get(TAGS, {}).values()]
     used = {word for tag in tags for word in tag.split()[1:2]}
     notes = [f"{key}: {text}" for key, text in sources.items() if key in used]
-    return make_table(_TITLES[section.record], ["name", *keys], rows, notes=notes)
+    return make_table(f"{section.title}: {len(rows)}", ["name", *keys], rows, notes=notes)
 
 
 def _entry_cell(entry: Mapping[str, Any], key: str) -> Cell:

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import textwrap
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
 from typing import Any
+
+import numpy as np
+from rich.console import Console
 
 from flexstage.analysis.assessment.error_budget import ErrorBudget
 from flexstage.analysis.assessment.sensitivities import Sensitivities
@@ -63,6 +69,52 @@ def to_html(value: Any) -> str:
         return _picture(value)
     tables = _TABLES.get(type(value), result_tables)
     return "".join(render.to_html(table) for table in tables(value) if table is not None)
+
+
+_LINES, _WIDTH, _NAMES = 25, 100, 8
+"""Most lines of a printed value, their width, and most names in one of them."""
+
+
+def to_text(value: Any) -> str:
+    """Print the tables of a result, or the sizes of its fields, in at most 25 lines.
+
+    >>> import flexstage as fs
+    >>> print(fs.ideal(fs.case("parallelogram")))  # doctest: +ELLIPSIS
+    <BLANKLINE>
+    Mobility...
+    """
+    tables = _TABLES.get(type(value))
+    if tables is None:
+        return _summary(value)
+    console = Console(width=_WIDTH, no_color=True)
+    with console.capture() as captured:
+        for table in filter(None, tables(value)):
+            console.print(*render.to_rich(table, _WIDTH), sep="\n")
+    lines = [line.rstrip() for line in captured.get().splitlines()]
+    return "\n".join(lines if len(lines) <= _LINES else [*lines[: _LINES - 1], f"... {len(lines) - _LINES + 1} further lines"])
+
+
+def _summary(value: Any) -> str:
+    """A dataclass: each field by its value, its shape, or its first names."""
+    texts = {each.name: _short(getattr(value, each.name)) for each in fields(value)}
+    shown = {name: text for name, text in texts.items() if text} if len(texts) >= _LINES else texts
+    width = max(map(len, shown), default=0)
+    lines = [type(value).__name__, *(f"  {name:{width}}  {text or 'none'}" for name, text in shown.items())]
+    return "\n".join(lines[:_LINES])
+
+
+def _short(value: Any) -> str:
+    """A value in one line; empty for an empty collection."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        return f"array {' x '.join(map(str, value.shape))}"
+    if isinstance(value, float | np.number | np.ndarray):
+        return f"{float(value):.6g}"
+    if is_dataclass(value):
+        return str(getattr(value, "name", "")) or type(value).__name__
+    if isinstance(value, Collection) and not isinstance(value, str | Enum):
+        names = [each if isinstance(each, str) else _short(each) for each in list(value)[:_NAMES]]
+        value = f"{len(value)}: {', '.join(names)}{', ...' if len(value) > _NAMES else ''}" if value else ""
+    return textwrap.shorten(str(value), _WIDTH, placeholder=" ...")
 
 
 def _picture(mechanism: Mechanism) -> str:

@@ -148,12 +148,13 @@ def plan(
 
 def catalogue(
     section: Annotated[
-        str | None, typer.Argument(metavar="[SECTION]", help="materials, stacks or gauges. Default: all.", show_default=False)
+        str | None,
+        typer.Argument(metavar="[SECTION]", help="materials, stacks, amplified, coils or gauges. Default: all.", show_default=False),
     ] = None,
     *,
     json: Json = None,
 ) -> None:
-    """List the shipped materials, piezo stacks and gauges.
+    """List the shipped materials, actuators and sensors.
 
     Each number has its source. In a design file, like = "NAME" starts from an entry.
     """

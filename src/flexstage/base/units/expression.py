@@ -86,6 +86,13 @@ def _named(name: str, scope: Scope) -> Amount:
     return found
 
 
+def _literal(amount: Amount, unit: str, scope: Scope) -> Amount:
+    """A number with its unit, unless a named number has the name of that unit and could be meant."""
+    if (named := scope.get(unit)) is not None and named.dimension.powers == amount.dimension.powers:
+        raise ExpressionError(f'"{unit}" is a unit and a named number of the same quantity', f"Rename the number, e.g. {unit}_1")
+    return amount
+
+
 def _negative(inner: Expression, scope: Scope) -> Amount:
     found = inner.amount(scope)
     return Amount(-found.value, found.dimension)
@@ -197,8 +204,7 @@ class _Parser:
         if number := self.match(_NUMBER):
             end = unit_end(self.text, self.at)
             unit, self.at = self.text[self.at : end].strip(), end
-            known = _amount(number, unit)
-            return Expression(frozenset(), lambda _scope: known, literal=True)
+            return Expression(frozenset(), partial(_literal, _amount(number, unit), unit), literal=True)
         if self.sign("("):
             return self.inside()
         name = self.match(_NAME)
@@ -309,7 +315,7 @@ def _amount(number: str, unit: str) -> Amount:
 
 def _name_advice(name: str, scope: Scope) -> str:
     if is_unit(name):
-        return f"{name} is a unit, and stands after a number: 1 {name}"
+        return f"{name} is a unit: write 1 {name}"
     if name in FUNCTIONS:
         return f"{name} is a function: {name}(...)"
     return suggest_nearest(name, scope) if scope else f'State it: [numbers] {name} = "26 mm"'

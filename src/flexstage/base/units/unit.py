@@ -28,8 +28,8 @@ _LONGEST = 60
 def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
     """Return the SI value of a text with a unit.
 
-    A ratio is a bare number or has "%". Raises `DesignError` at `where` for a missing or unknown unit, a wrong dimension (both are named),
-    a temperature scale with an offset, or a number that is not finite.
+    A ratio is a bare number or has "%". Zero needs no unit. Raises `DesignError` at `where` for a missing or unknown unit, a wrong
+    dimension (both are named), a temperature scale with an offset, or a number that is not finite.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH, STIFFNESS
     >>> parse("1.54 mm", LENGTH), parse("17 N/um", STIFFNESS), parse("5 %", RATIO)
@@ -162,6 +162,8 @@ def _split(text: str, quantity: Quantity, where: str) -> tuple[str, str]:
     number, unit = match[0], text[match.end() :].strip()
     if re.match(r"(?!1\s*/)[\d.,eE]*\d", unit):
         raise _no_number(text, quantity, where)
+    if not unit and quantity is not RATIO and Fraction(number) == 0:
+        return number, quantity.si if quantity.si != "mixed" else "1"
     if not unit and quantity is not RATIO:
         raise missing_unit(text, quantity, where=where)
     return number, unit or "1"

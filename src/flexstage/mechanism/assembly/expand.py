@@ -29,6 +29,7 @@ from flexstage.mechanism.assembly.sight import (
 )
 from flexstage.mechanism.mechanism import (
     GROUND,
+    NAMED,
     PLATFORM,
     GaugePlace,
     GaugeSum,
@@ -352,12 +353,22 @@ def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     links.strut.part: there is no part "wire". There are none.
     """
     parts = mechanism.parts
-    for section in ("parts", "bodies", "links", "units", "placements", "gauges"):
-        for where, home, name in references(getattr(mechanism, section), section):
-            if name not in getattr(mechanism, home):
-                yield Finding(where, f'there is no {home.removesuffix("s")} "{name}"', suggest_nearest(name, getattr(mechanism, home)))
+    yield from unknown_entries({section: getattr(mechanism, section) for section in NAMED})
     for where, link in every_link(mechanism):
         yield from _port_findings(where, link, parts) if link.part in parts else ()
+
+
+def unknown_entries(sections: Mapping[str, Any]) -> Iterator[Finding]:
+    """Materials, parts, units and sensors that the entries of sections, of a description or of a file's tree, name and do not have.
+
+    >>> print(*unknown_entries({"parts": {"leaf": {"material": "stel"}}, "materials": {"steel": {}}}))
+    parts.leaf.material: there is no material "stel". The nearest name is steel.
+    """
+    for section in ("parts", "bodies", "links", "units", "placements", "gauges"):
+        for where, home, name in references(sections.get(section, {}), section):
+            known = sections.get(home, {})
+            if name not in known:
+                yield Finding(where, f'there is no {home.removesuffix("s")} "{name}"', suggest_nearest(name, known))
 
 
 def _port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator[Finding]:

@@ -245,16 +245,13 @@ def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
 
 
 def spelling_findings(name: str) -> Iterator[Finding]:
-    """Findings about the name of a number: letters, digits and _, and no unit or function.
+    """Findings about the name of a number: letters, digits and _, and no function.
 
-    >>> print(*spelling_findings("t"))
-    numbers.t: t is a unit, so that "2 t" would mean two things. Call the number otherwise, for example t_1.
+    >>> print(*spelling_findings("sin"))
+    numbers.sin: sin has a meaning of its own in formulas. Call the number otherwise, for example sin_1.
     """
     if not _NAME.fullmatch(name):
         yield Finding(PREFIX + name[:60], "the name of a number begins with a letter and has letters, digits and _", "Rename it")
-    elif is_unit(name):
-        what = f'{name} is a unit, so that "2 {name}" would mean two things'
-        yield Finding(PREFIX + name, what, f"Call the number otherwise, for example {name}_1")
     elif name in FUNCTIONS or name.lower() in _NOT_FINITE:
         yield Finding(PREFIX + name, f"{name} has a meaning of its own in formulas", f"Call the number otherwise, for example {name}_1")
 

@@ -307,7 +307,8 @@ class RecordNode(Node):
         section = shipped_catalogue().section(self.record)
         demand: dict[str, Any] = {"required": required}
         if section is not None:
-            properties |= {LIKE: {"enum": list(section.entries), "description": "the entry of the catalogue to start from"}}
+            names = {"anyOf": [{"enum": list(section.entries)}, {"type": "string"}]}
+            properties |= {LIKE: names | {"description": "the entry of the catalogue to start from"}}
             demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
         demand |= {"oneOf": wrapped} if wrapped else {}
         shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}
@@ -463,7 +464,7 @@ def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, An
         return raw
     tags = raw.get(TAGS, {})
     if not isinstance(tags, dict) or not all(isinstance(tag, str) for tag in tags.values()):
-        reader.refuse(join(where, TAGS), "these are no tags", 'Write for example tags = { thickness = "stated paper 2.2" }')
+        reader.refuse(join(where, TAGS), "a tag is a text", 'Write tags = { thickness = "stated paper 2.2" }, and quote a key with dots')
     else:
         reader.tags.update({join(where, key): tag for key, tag in tags.items()})
     return {key: value for key, value in raw.items() if key != TAGS}

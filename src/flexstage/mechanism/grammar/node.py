@@ -194,7 +194,7 @@ class Node:
 
 @dataclass(frozen=True)
 class NumberNode(Node):
-    """A number of a quantity, within a bound. `zero`: nought stands without its unit, as in a matrix."""
+    """A number of a quantity, within a bound. `zero`: zero is written without a unit, as in a matrix."""
 
     quantity: Quantity
     bound: Bound | None = None
@@ -213,17 +213,21 @@ class NumberNode(Node):
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """The number in SI, or what a formula gives."""
+        scope = {} if reader.numbers is None else reader.numbers.scope
         try:
-            return self.si(raw, where)
+            value = self.si(raw, where)
         except DesignError:
-            if not isinstance(raw, str) or reader.numbers is None or not is_formula(raw, reader.numbers.scope):
+            if not isinstance(raw, str) or reader.numbers is None or not is_formula(raw, scope):
                 raise
-        return reader.formula(raw, self.quantity, where)
+            return reader.formula(raw, self.quantity, where)
+        if isinstance(raw, str) and any(name in raw for name in scope):
+            formula_value(raw, self.quantity, scope, where)  # raises if a named number is meant by the unit
+        return value
 
     def si(self, raw: Any, where: str) -> float:
         """The number in SI of what a file has; raises `DesignError` at `where` if that is none."""
-        if self.zero and is_bare(raw) and raw == 0:
-            return 0.0
+        if is_bare(raw) and raw == 0:
+            return float(raw)
         example = f'Write for example "{self.quantity.example}"'
         if isinstance(raw, str):
             return parse(raw, self.quantity, where=where)
@@ -248,9 +252,9 @@ class NumberNode(Node):
         text = {"type": "string", "pattern": _WITH_UNIT}
         told = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
         texts = [text, {"type": "string", "pattern": _FORMULA}] if definitions.formulas else [text]
-        texts = [{"const": 0}, *texts] if self.zero else texts
+        texts = [{"enum": [0, "0"]}, *texts]
         if self.quantity is not RATIO:
-            return ({"anyOf": texts} if len(texts) > 1 else text) | told
+            return {"anyOf": texts} | told
         return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | told | {"examples": [float(self.quantity.example)]}
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:

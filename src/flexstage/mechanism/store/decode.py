@@ -3,29 +3,32 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.mechanism.addresses.address import set_text, set_value
 from flexstage.mechanism.addresses.locate import canonical, locate
+from flexstage.mechanism.assembly.expand import unknown_entries
 from flexstage.mechanism.assembly.mount import STAGES, Mount, mount_all
-from flexstage.mechanism.catalogue import Section, shipped_catalogue
+from flexstage.mechanism.catalogue import SECTIONS, Catalogue, Section, shipped_catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.formulas import NUMBERS, read_numbers
 from flexstage.mechanism.grammar.grammar import LIKE, OVERRIDES, TAGS, node_of
 from flexstage.mechanism.grammar.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.store.anchor import anchor_paths
 from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
 from flexstage.mechanism.store.include import entry_of, with_included
 from flexstage.mechanism.store.lines import with_lines
 
 _Record = TypeVar("_Record")
+CATALOGUE = "catalogue"
+"""The key that names a file of the user's own materials, actuators and sensors."""
 
 
 def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
@@ -47,8 +50,20 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
         mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
     except EnoughError:
         reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
-    require(included.located(reader.findings))
+    if reader.findings and STAGES not in raw:
+        reader.findings += _unknown_names({name: table for name, table in raw.items() if isinstance(table, dict)})
+    require(included.located(list(dict.fromkeys(reader.findings))))
     return mechanism
+
+
+def _unknown_names(raw: dict[str, dict[str, Any]]) -> Iterator[Finding]:
+    """Unknown entries and bodies that a tree names, found although other values of the file are wrong."""
+    yield from unknown_entries(raw)
+    bodies = {GROUND, *raw.get("bodies", ())}
+    for name, link in raw.get("links", {}).items():
+        for body in link.get("joins", ()) if isinstance(link, dict) else ():
+            if isinstance(body, str) and "/" not in body and isinstance(link["joins"], list) and body not in bodies:
+                yield Finding(f"links.{name}.joins", f'there is no body "{body}"', suggest_nearest(body, bodies))
 
 
 def read_design(text: str, where: str) -> Mechanism:
@@ -140,8 +155,13 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     packages = raw.get("packages")
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
         return reader.note(missing)  # what they offer is not known, which says nothing about the rest
-    raw = _with_likes(reader, raw)
-    body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES)}
+    try:
+        raw = _with_likes(reader, raw, _catalogue(raw.get(CATALOGUE), files.where))
+    except DesignError as error:
+        return reader.note(error.findings)
+    body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES, CATALOGUE)}
+    if isinstance(raw.get("requirements"), dict):
+        body["requirements"] = dict(_dotted(raw["requirements"]))
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
         return BAD
@@ -168,28 +188,57 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     return replace(mechanism, formulas=Table(formulas))
 
 
-def _with_likes(reader: Reader, raw: dict[str, Any]) -> dict[str, Any]:
-    """The tree with what the catalogue states of entries that are like its own."""
-    for section in shipped_catalogue().sections:
-        table = raw.get(section.key)
+def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
+    for key, value in table.items():
+        if isinstance(value, dict) and key != TAGS:
+            yield from ((f"{key}.{inner}", each) for inner, each in _dotted(value))
+        else:
+            yield key, value
+
+
+def _catalogue(name: Any, where: str) -> Catalogue:
+    """The shipped catalogue with the entries of the user's file of that name, from the folder of the design file."""
+    if name is None:
+        return shipped_catalogue()
+    if not isinstance(name, str):
+        raise refuse(CATALOGUE, f"found {kind(name)} where a file is expected", 'Write catalogue = "lab.toml"')
+    tree = parse_toml(read_text(Path(where).parent / name), name)
+    known = {section.name: dict for section in SECTIONS} | {"sources": str}
+    for key, value in tree.items():
+        if key not in known or not isinstance(value, dict) or not all(isinstance(each, known[key]) for each in value.values()):
+            raise refuse(f"{CATALOGUE}: {name}: {key}", "this is no section of entries by name", suggest_nearest(key, known))
+    return shipped_catalogue().extended(tree)
+
+
+def _with_likes(reader: Reader, raw: dict[str, Any], catalogue: Catalogue) -> dict[str, Any]:
+    """The tree with the values of the catalogue's entries that its own entries are like."""
+    for key in dict.fromkeys(section.key for section in catalogue.sections):
+        table = raw.get(key)
         if isinstance(table, dict):
-            entries = {name: _with_like(reader, section, f"{section.key}.{name}", entry) for name, entry in table.items()}
-            raw = raw | {section.key: entries}
+            raw = raw | {key: {name: _with_like(reader, catalogue, key, name, entry) for name, entry in table.items()}}
     return raw
 
 
-def _with_like(reader: Reader, section: Section, where: str, entry: Any) -> Any:
+def _section_of(catalogue: Catalogue, key: str, entry: dict[str, Any]) -> Section | None:
+    """The section that an entry of a table may be like: that of its kind; without a kind the one that has the name."""
+    sections = [each for each in catalogue.sections if each.key == key]
+    if "kind" in entry:
+        return next((each for each in sections if each.kind == entry["kind"]), None)
+    return next((each for each in sections if str(entry[LIKE]) in each.entries), sections[0])
+
+
+def _with_like(reader: Reader, catalogue: Catalogue, key: str, name: str, entry: Any) -> Any:
     """An entry merged over the entry that `like` names. For an unknown one, missing keys are not reported in addition."""
-    own_kind = getattr(section.record, "kind", None)
-    if not isinstance(entry, dict) or LIKE not in entry or entry.get("kind", own_kind) != own_kind:
+    if not isinstance(entry, dict) or LIKE not in entry or (section := _section_of(catalogue, key, entry)) is None:
         return entry
-    name, known = entry[LIKE], section.entries
-    if not isinstance(name, str) or name not in known:
-        reader.refuse(f"{where}.{LIKE}", f"the catalogue has no {kind(name)}", suggest_nearest(kind(name), known))
-    shipped = known.get(str(name)) or next(iter(known.values()))
+    like, known = entry[LIKE], section.entries
+    if not isinstance(like, str) or like not in known:
+        reader.refuse(f"{key}.{name}.{LIKE}", f"the catalogue has no {kind(like)}", suggest_nearest(kind(like), known))
+    shipped = known.get(str(like)) or next(iter(known.values()), {})
     tags, own = {key: tag for key, tag in shipped.get(TAGS, {}).items() if key not in entry}, entry.get(TAGS, {})
-    reader.sources.update(shipped_catalogue().sources_of(tags.values()))
-    brought = {"source": f"{name} of the catalogue"} | dict(shipped) | ({"kind": section.kind} if section.kind else {})
+    reader.sources.update(catalogue.sources_of(tags.values()))
+    brought = {"source": f"{like} of the catalogue"} | dict(shipped) | ({"kind": section.kind} if section.kind else {})
     merged = brought | entry | {TAGS: tags | own if isinstance(own, dict) else own}
     return {key: value for key, value in merged.items() if key != LIKE}
 
@@ -240,5 +289,7 @@ def _overrides(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dic
             for key in [key for key in reader.formulas if key.startswith(where)]:
                 reader.formulas[address + key.removeprefix(where)] = reader.formulas.pop(key)
         except DesignError as error:
-            reader.note(replace(finding, where=where) for finding in error.findings)
+            key = f"{address}.{next(iter(value))}" if isinstance(value, dict) and value else ""
+            advice = f'. Quote a key with dots: "{short(key)}"' if key else ""
+            reader.note(replace(finding, where=where, advice=finding.advice + advice) for finding in error.findings)
     return values

@@ -10,6 +10,7 @@ from flexstage.mechanism.assembly.mount import STAGES, Mount
 from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.grammar.node import Definitions
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store.decode import CATALOGUE
 from flexstage.mechanism.store.file import FORMAT
 from flexstage.mechanism.store.include import INCLUDE
 
@@ -23,6 +24,7 @@ def schema() -> dict[str, Any]:
     found = schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
     said = "Files whose numbers, materials, parts, sensors, units and sources belong to this design, from beside it."
     found["properties"] |= {INCLUDE: {"type": "array", "items": {"type": "string"}, "description": said}}
+    found["properties"] |= {CATALOGUE: {"type": "string", "description": "A file of further materials, actuators and sensors for `like`."}}
     return found
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number
 from flexstage.base.sparse import Rows, Sparse, as_csr
 from flexstage.mechanism.mechanism import Damping
@@ -44,7 +45,7 @@ Contributions: TypeAlias = Mapping[str, Contribution]
 
 
 @dataclass(frozen=True, eq=False)
-class LinearModel(CheckedFields):
+class LinearModel(InNotebook, CheckedFields):
     """M q'' + D q' + K q = B u - M_u u'', y = C q + D u, with K and M as named sums of contributions.
 
     - `force` (..., n, m): direct generalised forces of the inputs.

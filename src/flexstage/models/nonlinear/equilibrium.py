@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.nonlinear.elements.fixed_coordinates import FixedCoordinates
@@ -35,7 +36,7 @@ LESS = "Reduce the load, or compute the buckling mode with flexstage buckle"
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class State(InNotebook):
     """Static equilibrium of a stage under loads, in cases of any shape (...).
 
     `status` is how each solution ended, after `iterations` and with `residual` (over lengths and stiffnesses).

@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, stack
 from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import law
@@ -56,7 +57,7 @@ class LoadPoints:
 
 
 @dataclass(frozen=True, eq=False)
-class Nonlinear:
+class Nonlinear(InNotebook):
     """Nonlinear model of a stage; see `nonlinear`.
 
     `bodies` are named in order, the ground is the last number; `reference` (n + 1, 3) is nominal. Loads act at `places`: first the wrench

@@ -1,4 +1,4 @@
-"""Distributions of deviations about nought: normal, perhaps with rejects taken out, and uniform."""
+"""Distributions of deviations: normal, perhaps truncated, and uniform; about zero or, for asymmetric tolerances, about an offset."""
 
 from __future__ import annotations
 
@@ -24,24 +24,25 @@ class Shape(Enum):
 
 @dataclass(frozen=True)
 class Distribution:
-    """A distribution about nought of `size`; of a normal one, what lies beyond plus or minus `within` is sorted out."""
+    """A distribution of `size` about `offset`, its mean; a normal one may be truncated at plus or minus `within` from there."""
 
     shape: Shape
     size: float
     within: float | None = None
+    offset: float = 0.0
 
     def quantile(self, shares: Array) -> Array:
         """Deviations at shares of the probability, the inverse of the cumulative distribution.
 
-        >>> Distribution(Shape.UNIFORM, 2.0).quantile(np.array([0.0, 0.5, 1.0])).tolist()
-        [-2.0, 0.0, 2.0]
+        >>> Distribution(Shape.UNIFORM, 2.0, offset=1.0).quantile(np.array([0.0, 0.5, 1.0])).tolist()
+        [-1.0, 1.0, 3.0]
         """
         if self.shape is Shape.UNIFORM:
-            return self.size * (2.0 * shares - 1.0)
+            return self.offset + self.size * (2.0 * shares - 1.0)
         if self.within is None:
-            return self.size * scipy.special.ndtri(np.clip(shares, _LEAST, 1.0 - 2.0 * _LEAST))
+            return self.offset + self.size * scipy.special.ndtri(np.clip(shares, _LEAST, 1.0 - 2.0 * _LEAST))
         lowest = scipy.special.ndtr(-self.within / self.size)
-        return np.clip(self.size * scipy.special.ndtri(lowest + shares * (1.0 - 2.0 * lowest)), -self.within, self.within)
+        return self.offset + np.clip(self.size * scipy.special.ndtri(lowest + shares * (1.0 - 2.0 * lowest)), -self.within, self.within)
 
     @property
     def deviation(self) -> float:
@@ -60,20 +61,21 @@ class Distribution:
 
     @property
     def largest(self) -> float | None:
-        """The largest deviation there is, if there is one.
+        """The largest size of a deviation; None if it has no limit.
 
-        >>> Distribution(Shape.NORMAL, 1.0).largest is None
-        True
+        >>> Distribution(Shape.NORMAL, 1.0).largest is None, Distribution(Shape.UNIFORM, 3.0, offset=2.0).largest
+        (True, 5.0)
         """
-        return self.size if self.shape is Shape.UNIFORM else self.within
+        half = self.size if self.shape is Shape.UNIFORM else self.within
+        return None if half is None else half + abs(self.offset)
 
     def times(self, factor: float) -> Distribution:
         """The same shape, so many times as wide.
 
         >>> Distribution(Shape.NORMAL, 1.0, within=2.0).times(2.0)
-        Distribution(shape=<Shape.NORMAL: 'normal'>, size=2.0, within=4.0)
+        Distribution(shape=<Shape.NORMAL: 'normal'>, size=2.0, within=4.0, offset=0.0)
         """
-        return Distribution(self.shape, self.size * factor, None if self.within is None else self.within * factor)
+        return Distribution(self.shape, self.size * factor, None if self.within is None else self.within * factor, self.offset * factor)
 
 
 NONE = Distribution(Shape.NORMAL, 0.0)

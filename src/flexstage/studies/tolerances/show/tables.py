@@ -63,6 +63,10 @@ def distribution_text(scatter: Scatter, distribution: Distribution) -> str:
     ['5 um (sigma)', '+-5 um']
     """
     text = _size(scatter, distribution.size)
+    if distribution.offset:
+        half = distribution.within or distribution.size
+        low, high = (_size(scatter, distribution.offset + sign * half) for sign in (-1.0, 1.0))
+        return f"{low} to {high}" + (f", {text} (sigma)" if distribution.shape is Shape.NORMAL else "")
     if distribution.shape is Shape.UNIFORM:
         return f"+-{text}"
     return f"{text} (sigma)" + (f", within +-{_size(scatter, distribution.within)}" if distribution.within is not None else "")
