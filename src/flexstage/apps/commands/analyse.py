@@ -28,7 +28,7 @@ from flexstage.show.tables import errors, kinematics, lost_motion, statics, work
 from flexstage.show.tables.change import set_table
 from flexstage.show.tables.force_workspace import drive_force_tables, force_workspace_tables
 from flexstage.show.tables.modes import mode_table
-from flexstage.show.tables.overview import closing_text, load_line, overview_tables, small_line, stage_text
+from flexstage.show.tables.overview import closing_text, floating_line, load_line, overview_tables, small_line, stage_text
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table
 
@@ -133,6 +133,7 @@ def _first_lines(texts: list[str]) -> list[str]:
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
     yield stage_text(analysis)
     yield verdict_table(analysis.verdicts)
+    yield floating_line(analysis.linear)
     yield load_line(analysis)
     yield small_line(analysis)
     yield from list_caveats("analyse", analysis.mechanism)

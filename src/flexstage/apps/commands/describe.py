@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from flexstage.analysis.caveats import caveats, model_findings
+from flexstage.analysis.loaded.standing import drawn
 from flexstage.apps.words import File
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.storage.document import as_text
@@ -33,6 +34,7 @@ from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, find_section, parameter_table
 from flexstage.show.plan import plan_figure
 from flexstage.show.tables.description import composition_table
+from flexstage.show.tables.overview import floating_line
 from flexstage.show.viewer.data import still_data
 from flexstage.studies.form import study_schema
 
@@ -112,7 +114,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
-    show((composition_table(mechanism), *list_caveats("check", mechanism)))
+    show((composition_table(mechanism), floating_line(drawn(mechanism)), *list_caveats("check", mechanism)))
     count = len(caveats(mechanism).warnings)
     said = f", {count} warning{'' if count == 1 else 's'}" if count else ""
     print_result(f"{design}: no findings{said}.")

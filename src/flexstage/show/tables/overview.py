@@ -13,7 +13,11 @@ from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.analysis.workspace.strength import HingeStress
+from flexstage.base.labelled import NOISE
 from flexstage.base.number import first_design
+from flexstage.models.batch.choice import platform_rows
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.undetermined import floats
 from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
@@ -55,6 +59,24 @@ def load_line(analysis: Analysis) -> str | None:
     return None if analysis.loaded is None else analysis.loaded.text or None
 
 
+def floating_line(model: LinearModel | None) -> str | None:
+    """Motions of the platform without stiffness, and the actuators that drive them; `None` of a stage without any.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> floating_line(lumped(double_triangle())) is None
+    True
+    """
+    if model is None or model.floating is None:
+        return None
+    twist = np.abs(platform_rows(model) @ model.floating).T
+    axes = [name for name, moved in zip(COMPONENTS, np.any(twist > NOISE * np.max(twist), axis=0), strict=True) if moved]
+    driving = [name for name, drives in zip(model.actuators, floats(model, model.actuators), strict=True) if drives]
+    modes = "a mode" if len(twist) == 1 else f"{len(twist)} modes"
+    where = f"No stiffness along {', '.join(axes)}, driven by {', '.join(driving)}"
+    return f"{where}: {modes} at 0 Hz; static stiffness and strokes at force are undefined there."
+
+
 def small_line(analysis: Analysis) -> str | None:
     """By how much linear kinematics is off over the strokes; `None` where no motion is known.
 
@@ -89,6 +111,7 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
     >>> [each.title for each in summary_tables(analyse(double_triangle(), Model.IDEAL), explained=True) if isinstance(each, Table)]
     ['Platform']
     """
+    yield floating_line(analysis.linear)
     yield load_line(analysis)
     yield small_line(analysis)
     axes = axis_table(analysis)
