@@ -27,9 +27,9 @@ from flexstage.show.document import analysis_body, analysis_results, envelope, r
 from flexstage.show.table import Table, result_table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, workspace
 from flexstage.show.tables.change import set_table
-from flexstage.show.tables.force_workspace import force_workspace_tables
+from flexstage.show.tables.force_workspace import drive_force_tables, force_workspace_tables
 from flexstage.show.tables.modes import mode_table
-from flexstage.show.tables.overview import closing_text, count_text, load_line, overview_tables, small_line, stage_text
+from flexstage.show.tables.overview import closing_text, count_text, floating_line, load_line, overview_tables, small_line, stage_text
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table
 
@@ -131,6 +131,7 @@ def _first_lines(texts: list[str]) -> list[str]:
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
     yield stage_text(analysis)
     yield verdict_table(analysis.verdicts)
+    yield floating_line(analysis.linear)
     yield from _change_tables(analysis, compared)
     yield from _analysis_tables(analysis)
     yield load_line(analysis)
@@ -165,6 +166,8 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     yield None if analysis.modes is None else mode_table(analysis.modes)
     if analysis.force_workspace is not None:
         yield from force_workspace_tables(analysis.force_workspace)
+    yield from drive_force_tables(analysis.drive_force)
+    yield workspace.weakest_first(analysis.stress)
     if analysis.workspace is not None:
         yield from workspace.stroke_tables(analysis.workspace)
         yield from workspace.strength_tables(analysis.workspace)

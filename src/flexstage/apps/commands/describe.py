@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from flexstage.analysis.caveats import caveats, model_findings
+from flexstage.analysis.loaded.standing import drawn
 from flexstage.apps.words import File
 from flexstage.base.finding import DesignError, Finding, combine_warnings, refuse, require
 from flexstage.base.storage.document import as_text
@@ -33,7 +34,7 @@ from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, find_section, parameter_table
 from flexstage.show.plan import plan_figure
 from flexstage.show.tables.description import composition_table
-from flexstage.show.tables.overview import count_text
+from flexstage.show.tables.overview import count_text, floating_line
 from flexstage.show.viewer.data import still_data
 from flexstage.studies.form import study_schema
 from flexstage.studies.synthesis.specification import specification_schema
@@ -114,7 +115,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
-    show((composition_table(mechanism), *list_caveats("check", mechanism)))
+    show((composition_table(mechanism), floating_line(drawn(mechanism)), *list_caveats("check", mechanism)))
     count = len(combine_warnings(caveats(mechanism).warnings))
     counted = f", {count_text(count, 'warning')}" if count else ""
     print_result(f"{design}: no errors{counted}.")

@@ -12,7 +12,12 @@ from flexstage.analysis.assessment.measures import MeasureKind
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.workspace.strength import HingeStress
+from flexstage.base.labelled import NOISE
 from flexstage.base.number import first_design
+from flexstage.models.batch.choice import platform_rows
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.undetermined import floats
 from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
@@ -54,6 +59,24 @@ def load_line(analysis: Analysis) -> str | None:
     return None if analysis.loaded is None else analysis.loaded.text or None
 
 
+def floating_line(model: LinearModel | None) -> str | None:
+    """Motions of the platform without stiffness, and the actuators that drive them; `None` of a stage without any.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> floating_line(lumped(double_triangle())) is None
+    True
+    """
+    if model is None or model.floating is None:
+        return None
+    twist = np.abs(platform_rows(model) @ model.floating).T
+    axes = [name for name, moved in zip(COMPONENTS, np.any(twist > NOISE * np.max(twist), axis=0), strict=True) if moved]
+    driving = [name for name, drives in zip(model.actuators, floats(model, model.actuators), strict=True) if drives]
+    modes = "a mode" if len(twist) == 1 else f"{len(twist)} modes"
+    where = f"No stiffness along {', '.join(axes)}, driven by {', '.join(driving)}"
+    return f"{where}: {modes} at 0 Hz; static stiffness and strokes at force are undefined there."
+
+
 def small_line(analysis: Analysis) -> str | None:
     """The error of linear kinematics over the strokes; `None` without a known motion.
 
@@ -88,6 +111,7 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
     >>> [each.title for each in summary_tables(analyse(double_triangle(), Model.IDEAL), explained=True) if isinstance(each, Table)]
     ['Platform']
     """
+    yield floating_line(analysis.linear)
     axes = axis_table(analysis)
     yield axes if explained or axes is None else replace(axes, notes=())
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
@@ -215,12 +239,17 @@ def _first_rows(table: Table) -> Table:
 def _strength_text(analysis: Analysis) -> str | None:
     reach = analysis.workspace
     buckling = analysis.buckling if reach is None else reach.buckling
-    said: list[str] = []
-    if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"Least safety factor against yield: {number(single(reach.stress.min_safety), 4)}, in {reach.stress.weakest}.")
+    strengths = (analysis.stress, None if reach is None else reach.stress)
+    said = [_weakest_text(each) for each in strengths if each is not None and each.links]
     if buckling is not None:
         said.append(f"Buckling load factor: {number(single(buckling.min_factor), 4)}.")
     return "\n".join(said) or None
+
+
+def _weakest_text(found: HingeStress) -> str:
+    """The least safety factor at the worst corner of some strokes, the hinge and the place in it."""
+    place = f", {found.places[found.links.index(found.weakest)]}" if found.places else ""
+    return f"Least safety factor at the worst corner {found.condition}: {number(single(found.min_safety), 4)}, in {found.weakest}{place}."
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
@@ -284,7 +313,13 @@ def _loss_cause(analysis: Analysis, name: str) -> str:
 
 def _safety_cause(analysis: Analysis, _: str) -> str:
     stress = None if analysis.workspace is None else analysis.workspace.stress
+    if stress is None and analysis.kinematics.thrusts:
+        return "all coils at peak current; safety.at_strokes is at the required strokes"
     return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
+
+
+def _cause_at_strokes(analysis: Analysis, _: str) -> str:
+    return "" if analysis.stress is None else f"the hinge {analysis.stress.weakest}"
 
 
 _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
@@ -294,4 +329,5 @@ _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
     measures.loss: _loss_cause,
     measures.own_loss: _loss_cause,
     measures.safety: _safety_cause,
+    measures.safety_at_strokes: _cause_at_strokes,
 }
