@@ -23,7 +23,7 @@ from flexstage.experiment.formats.write import write
 from flexstage.mechanism.store import dump
 from tests.apps.command import Command, design_in
 
-SMALL = ("--seconds", "0.02")
+SMALL = ("--quick", "--seconds", "0.02")
 
 
 @pytest.fixture
@@ -167,7 +167,7 @@ def test_a_file_of_hysteresis_and_one_of_poses(guide: Command, tmp_path: Path) -
         'format = "flexstage hysteresis 1"\nthresholds = ["0 V", "20 V"]\nweights = ["100 nm/V", "20 nm/V"]\nvolts = ["0 V", "100 V"]\n'
     )
     (tmp_path / "path.csv").write_text("time [ms],x [um]\n0,0\n20,1\n40,0\n")
-    words = ("--hysteresis", "stack.toml", "--trajectory", "path.csv", "--feedforward", "hysteresis", "--json", "-")
+    words = ("--quick", "--hysteresis", "stack.toml", "--trajectory", "path.csv", "--feedforward", "hysteresis", "--json", "-")
     ended = guide("loop", "stage.toml", *words)
     assert ended.code == 0, ended.err
     assert ended.document["hysteresis"]["actuators"]["B"]["rms_error_inverse"] < 1e-9  # the stack is the model: the inverse is exact
@@ -234,7 +234,7 @@ def test_the_header_is_an_output_too(guide: Command, tmp_path: Path) -> None:
 def test_a_trajectory_of_what_is_no_number_is_refused(guide: Command, tmp_path: Path, rows: str, message: str) -> None:
     (tmp_path / "way.csv").write_text(f"time [s],x [um]\n{rows}\n")
     before = sorted(tmp_path.iterdir())
-    ended = guide("loop", "stage.toml", "--trajectory", "way.csv", "--export", "g.c")
+    ended = guide("loop", "stage.toml", "--quick", "--trajectory", "way.csv", "--export", "g.c")
     assert ended.code == 2
     assert message in ended.err
     assert sorted(tmp_path.iterdir()) == before
@@ -328,7 +328,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
 @pytest.mark.parametrize(("arguments", "texts"), BAD)
 def test_bad_input_is_named_and_nothing_written(guide: Command, tmp_path: Path, arguments: tuple[str, ...], texts: tuple[str, ...]) -> None:
     before = sorted(tmp_path.iterdir())
-    ended = guide("loop", "stage.toml", "--report", "loop.html", *arguments)
+    ended = guide("loop", "stage.toml", "--quick", "--report", "loop.html", *arguments)
     assert ended.code == 2, ended.out
     assert all(text in ended.err for text in texts), ended.err
     assert "Traceback" not in ended.err

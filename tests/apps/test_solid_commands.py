@@ -178,7 +178,7 @@ def test_interruption_writes_nothing(command: Command, tmp_path: Path, monkeypat
 
     monkeypatch.setattr("flexstage.solid.results.verification.solid_stage", interrupted)
     ended = command("solid", "stage.toml", "--json", "out.json", "--report", "out.html")
-    assert ended.code == 2
+    assert ended.code == 130
     assert sorted(path.name for path in tmp_path.iterdir()) == ["stage.toml"]
 
 
@@ -192,7 +192,7 @@ main()
 
 @pytest.mark.full  # its twins: the run that was stopped, of the cache; the interruptions of processes, and of the command above
 @pytest.mark.skipif(sys.platform != "linux", reason="sends the signal of a keyboard")
-def test_an_interruption_ends_with_code_two_and_the_same_command_resumes(tmp_path: Path) -> None:
+def test_an_interruption_ends_with_the_code_of_its_signal_and_the_same_command_resumes(tmp_path: Path) -> None:
     drawn = propped(6e-3, 7e-3)
     links = {name.replace(" ", "_"): replace(link, part=link.part.replace(" ", "_")) for name, link in drawn.links.items()}
     parts = {name.replace(" ", "_"): part for name, part in drawn.parts.items()}
@@ -206,7 +206,7 @@ def test_an_interruption_ends_with_code_two_and_the_same_command_resumes(tmp_pat
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate()
-    assert process.returncode == 2
+    assert process.returncode == 130
     assert said.startswith("Interrupted; nothing was written. Kept are only finished finite elements, in the cache, ")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["cache", "stage.toml", "temporary"]
     assert not list((tmp_path / "temporary").iterdir())

@@ -47,7 +47,7 @@ def _end(number: int, _frame: object) -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run a command line and return its exit code.
 
-    0 done, 1 requirement missed (`--strict`), 2 bad input, unwritable output or interrupted, 70 a fault, 128 + n ended by signal n.
+    0 done, 1 requirement missed (`--strict`), 2 bad input or unwritable output, 70 a fault, 128 + n ended by signal n.
     """
     return run_guarded(lambda: _run(list(arguments)))
 

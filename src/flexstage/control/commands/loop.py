@@ -78,8 +78,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
-    With nothing else given: the lumped model, a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one
-    sample late. Where forces drive the stage, a PID controller.
+    With nothing else given: the lumped model, a PI controller with notches, optimised within a margin of 6 dB, at 10 kHz, one
+    sample late. Where forces drive the stage, a PID controller. --quick tunes it without optimisation.
 
     With --at, --load, --fixed or --temperature: about that operating point.
 

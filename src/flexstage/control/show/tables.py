@@ -148,7 +148,8 @@ def _controller_tables(found: LoopStudy) -> list[Table | None]:
 def margin_tables(found: LoopStudy) -> list[Table | None]:
     """Tabulate bandwidth and margins by coordinate; none in open loop."""
     margins = None if found.margins is None else found.margins.loops
-    return [result_table(each) for each in (found.bandwidths, margins, found.disk_margin) if each is not None]
+    shifted = {percent(each.shift): each for each in found.shifted_peaks}
+    return [result_table(each) for each in (found.bandwidths, margins, found.disk_margin, shifted or None) if each is not None]
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:

@@ -145,6 +145,8 @@ def _goal(found: ControllerSetup) -> Iterator[Finding]:
     """Findings for keys that contradict an objective."""
     if found.goal is None:
         return
+    if found.quick:
+        yield Finding("controller.goal", "quick tuning has no goal", "Leave one of them out (--quick, --tune-for)")
     if found.law not in (*SEARCHED, ControllerKind.NONE):
         advice = "Take kind pi, pid or lqg, or leave it out"
         yield Finding("controller.goal", f"a controller of kind {found.law.value} has no optimisation", advice)
