@@ -332,7 +332,9 @@ def test_a_computers_delay_and_hold_are_those_of_one_and_a_half_samples():
 def test_damping_that_is_not_reached_is_said():
     """At the rate of the loop itself, delay and hold turn a mode at a sixth of it by 90 degrees: nothing is left to damp it."""
     for rate, reached in ((None, 0.3), (10e3, 0.01)):
-        study = loop_study(case("parallelogram"), LoopSetup(damping=DampingSetup(ratio=0.3, rate=rate)))
+        study = loop_study(
+            case("parallelogram"), LoopSetup(controller=ControllerSetup(quick=True), damping=DampingSetup(ratio=0.3, rate=rate))
+        )
         assert study.damping.reached == pytest.approx(reached, rel=0.15)
         told = [each.where for each in study.warnings if "was specified, but the lowest" in each.what]
         assert told == (["damping.ratio"] if rate else [])

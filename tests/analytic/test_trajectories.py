@@ -199,7 +199,7 @@ def test_bad_tables_are_named(tmp_path, text, message):
 
 
 def test_unknown_coordinates_are_named():
-    with pytest.raises(DesignError, match=r"trajectory: rx: the loop has no coordinate of this name.*The loop's coordinates are x, y"):
+    with pytest.raises(DesignError, match=r"trajectory: rx: unknown coordinate.*The loop's coordinates are x, y"):
         reference(Step({"rx": 1e-6}), ("x", "y"), np.zeros(1))
     with pytest.raises(DesignError, match="2 times"):
         Table(np.array([0.0, 1.0]), np.zeros((3, 1)), ("x",))

@@ -101,7 +101,7 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
     exchanged = ended_badly(recorded, "stack.csv", "--volts", "y", "--stroke", "u")
     assert "y is in um, which is not volts" in exchanged
     assert "u is in V, which is not a length" in exchanged
-    assert "there is no such file" in ended_badly(recorded, "none.csv")
+    assert "file not found" in ended_badly(recorded, "none.csv")
     assert "no range (got 1000 V to 0 V" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
     assert "step.uff: record: too short after the step" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")
     assert "stack.csv is read by this command" in ended_badly(recorded, "stack.csv", "-o", "stack.csv")

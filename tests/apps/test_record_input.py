@@ -52,7 +52,7 @@ def refused(ended: Ended, said: str) -> None:
 @pytest.mark.parametrize(
     ("name", "data", "said"),
     [
-        ("missing.uff", None, "missing.uff: there is no such file"),
+        ("missing.uff", None, "missing.uff: file not found"),
         ("folder", None, "folder: it is a folder"),
         ("empty.h5", b"", "empty.h5: it is empty"),
         ("junk.uff", np.random.default_rng(0).bytes(20_000), "junk.uff: it is neither text nor a known form of record"),
@@ -80,7 +80,7 @@ def test_what_is_no_record_is_refused(
     ("option", "target", "said"),
     [
         ("--json", "record.uff", "record.uff is read by this command"),
-        ("--json", "missing/out.json", "there is no folder missing"),
+        ("--json", "missing/out.json", "folder missing not found"),
         ("--json", "folder", "it is a folder"),
         ("--json", "/dev/full", "No space left on device"),
     ],

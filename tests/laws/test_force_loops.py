@@ -61,7 +61,9 @@ def single():
 
 @pytest.fixture(scope="module")
 def study(single):
-    return loop_study(single, LoopSetup(amplifier=AmplifierSetup(bandwidth=5e3, bits=16, current_noise=2e-6)))
+    return loop_study(
+        single, LoopSetup(amplifier=AmplifierSetup(bandwidth=5e3, bits=16, current_noise=2e-6), controller=ControllerSetup(quick=True))
+    )
 
 
 def test_a_command_of_one_metre_takes_the_current_that_holds_it(single):

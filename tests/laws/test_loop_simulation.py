@@ -248,8 +248,8 @@ def test_unstable_loops_are_told_with_the_time():
     ("change", "message"),
     [
         ({"reference": np.zeros((5, 2))}, r"reference: it is \(5, 2\)"),
-        ({"reference": np.full((5, 6), np.nan)}, "reference at index 0, 0: found nan, expected a finite number"),
-        ({"named": {"ground.q": np.zeros(5)}}, "ground.q: the loop has no input of this name. Near to it are"),
+        ({"reference": np.full((5, 6), np.nan)}, "reference at index 0, 0: must be a finite number (got nan)"),
+        ({"named": {"ground.q": np.zeros(5)}}, "ground.q: the loop has no input of this name. Use"),
         ({"named": {"noise.S1": np.zeros(4)}}, r"noise.S1: wrong length \(got \(4,\), expected 5 samples"),
     ],
 )
@@ -261,7 +261,7 @@ def test_wrong_series_are_named(change, message):
 
 def test_motions_that_were_not_kept_are_named():
     found = simulate(full_loop(motions=("platform.x",)), np.zeros((3, 6)))
-    with pytest.raises(DesignError, match=r"platform\.y: not recorded in the simulation\. The nearest name is platform\.x"):
+    with pytest.raises(DesignError, match=r"platform\.y: not recorded in the simulation\. Use platform\.x"):
         tracking(found)
 
 

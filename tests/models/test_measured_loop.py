@@ -50,7 +50,7 @@ from tests.models.synthetic_records import record, truth
 
 COPIES = 200 if FULL else 60
 SHAKEN = VibrationSetup(criterion=Criterion("VC-D"))
-SETUP = LoopSetup(floor=Floor(x=SHAKEN, y=SHAKEN, z=SHAKEN))
+SETUP = LoopSetup(floor=Floor(x=SHAKEN, y=SHAKEN, z=SHAKEN), controller=ControllerSetup(quick=True))
 
 
 def shaken(stage: Mechanism, seconds: float, late: float) -> Identification:

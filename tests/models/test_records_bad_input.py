@@ -63,7 +63,7 @@ def names(path: Path) -> tuple[str, ...]:
 
 
 def test_what_is_no_record_is_told(tmp_path: Path) -> None:
-    assert "there is no such file" in refusal(tmp_path / "none.uff")
+    assert "file not found" in refusal(tmp_path / "none.uff")
     assert "it is a folder" in refusal(tmp_path)
     for content, told in {
         b"": "it is empty",
@@ -95,7 +95,7 @@ def test_the_other_kind_is_not_given_for_the_one_asked(tmp_path: Path) -> None:
 def test_channels_that_no_one_has_are_named_with_the_nearest(tmp_path: Path) -> None:
     path = plain(tmp_path / "a.uff", "uff")
     told = refusal(path, Options(inputs=("u2",), outputs=("S*",), units=(("S7", "um"),)))
-    assert "inputs u2: no channel is called so. There are S1, u1" in told
+    assert "inputs u2: unknown channel. Use S1 or u1" in told
     assert "units S7" in told
     assert "named as an input and as an output" in refusal(path, Options(inputs=("u1",), outputs=("u*",)))
 

@@ -70,7 +70,7 @@ def test_files_on_disk(tmp_path):
             "conflicts with the outer envelope",
         ),
         (HEAD + PLAYS + 'creep = { rate = 0.02, reference = "0 s" }', "creep.reference"),
-        (HEAD + PLAYS + "threshold = 3", "line 4: threshold: this key is not known"),
+        (HEAD + PLAYS + "threshold = 3", ":4: threshold: unknown key"),
     ],
 )
 def test_mistakes_are_named(text, words):

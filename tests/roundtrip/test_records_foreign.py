@@ -277,7 +277,7 @@ def test_arrays_of_unknown_meaning_are_listed_with_the_option_that_names_them(tm
         read(path)
     with pytest.raises(DesignError, match=r"no times and no rate.*dt = 0.000488281.*\"step=...\""):
         read(path, of(samples="u"))
-    with pytest.raises(DesignError, match=r"step=dz: it has no array of this name"):
+    with pytest.raises(DesignError, match=r"step=dz: unknown array"):
         read(path, of(samples="u", step="dz"))
     with pytest.raises(DesignError, match=r"no frequencies"):
         read(path, of(responses="H"))

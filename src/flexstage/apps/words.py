@@ -1,4 +1,4 @@
-"""Words that options of commands choose from."""
+"""Choices of options."""
 
 from enum import Enum
 
@@ -9,6 +9,7 @@ class File(Enum):
     DESIGN = "design"
     STUDY = "study"
     LOOP = "loop"
+    SPECIFICATION = "specification"
     HYSTERESIS = "hysteresis"
 
 

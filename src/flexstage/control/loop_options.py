@@ -8,6 +8,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
+import typer
+
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.units.quantity import ACCELERATION_NOISE, NOISE_DENSITY, RATIO, VELOCITY_NOISE
 from flexstage.control.study.choices import Axes, Compensation, Criterion, Following
@@ -69,8 +71,9 @@ class LoopOptions:
     bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: maximum at the margin.")] = None
     tune_for: Annotated[
         TuningObjective | None,
-        word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: none.", show_default=False),
+        word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),
     ] = None
+    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning: maximum bandwidth at the margin, without optimisation.")] = False
     max_sensitivity: Annotated[
         str | None, text_option("--max-sensitivity", "NUMBER", "Maximum peak sensitivity Ms of a tuned loop. Default: 2.")
     ] = None
@@ -135,6 +138,8 @@ class LoopOptions:
         for name, address in _ADDRESSES.items():
             if (value := given[name]) is not None:
                 yield address, SetupChange(f"--{name.replace('_', '-')}", value.value if isinstance(value, Enum) else value)
+        if self.quick:
+            yield "controller.quick", SetupChange("--quick", value=True)
         if self.seconds is not None:
             yield "seconds", SetupChange("--seconds", f"{self.seconds!r} s")
         if self.hysteresis is not None:

@@ -232,7 +232,7 @@ def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, floa
 
 def _findings(floor: Mapping[str, Spectrum]) -> list[Finding]:
     known = [f"{GROUND}.{name}" for name in COMPONENTS]
-    return [Finding(name, "the ground has no such motion", suggest_nearest(name, known)) for name in floor if name not in known]
+    return [Finding(name, "unknown motion of the ground", suggest_nearest(name, known)) for name in floor if name not in known]
 
 
 def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Iterator[str]:

@@ -33,7 +33,7 @@ Score = Callable[[Array], float]
 class Residues:
     """Modal gains (groups, outputs, inputs) of model and test, in equal units; `inputs_known` (m,) are inputs with convertible units.
 
-    `strokes` (m,) are inputs recorded as strokes; a voltage may precede an unknown amplifier.
+    `direct` (m,) are inputs in the actuator's own quantity or a force; a voltage may precede an unknown amplifier.
     """
 
     outputs: tuple[str, ...]
@@ -41,7 +41,7 @@ class Residues:
     theory: Array
     measured: Array
     inputs_known: Array
-    strokes: Array
+    direct: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +178,7 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
         return (*found, *gain_doubts(right))
     found = [*_exchange_doubts(residues.inputs, likeness, _correlations(theory, theory))]
     if not found:
-        found += _common_scale_doubts(*_ratios(theory, measured, residues.strokes))
+        found += _common_scale_doubts(*_ratios(theory, measured, residues.direct))
         found += _scale_doubts(residues.inputs, *_ratios(theory, measured, residues.inputs_known))
         found += _scale_doubts(residues.outputs, *_ratios(rows, measured_rows, np.ones(len(residues.outputs), dtype=bool)))
     return tuple(found)

@@ -29,7 +29,7 @@ from flexstage.experiment.identification.identified import (
     Widening,
 )
 from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
-from flexstage.experiment.updating.gains import is_length, metres
+from flexstage.experiment.updating.gains import is_voltage, si_size
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
@@ -197,7 +197,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     >>> compare(double_triangle(), identify(one_mode_record()))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: y: the stage has no output of this name, ...
+    flexstage.base.finding.DesignError: y: unknown output, ...
     """
     linear = read(mechanism, model)
     require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Compare with lumped or mapped")])
@@ -244,7 +244,7 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
     gauges = [name for name in known if "." not in name]
     require(
-        Finding(channel.name, "the stage has no output of this name, nor of any other of the record", suggest_nearest(channel.name, gauges))
+        Finding(channel.name, "unknown output, nor of any other of the record", suggest_nearest(channel.name, gauges))
         for channel in experiment.outputs
         if not found
     )
@@ -353,7 +353,7 @@ def _residues(
     shape = (-1, len(sensors), len(inputs))
     if not matched or not inputs:
         return Residues(tuple(sensors), inputs, *np.zeros((2, 0, *shape[1:])), *np.zeros((2, len(inputs)), dtype=bool))
-    sizes = np.array([metres(mechanism, experiment.inputs[index]) for index in columns])
+    sizes = np.array([si_size(mechanism, experiment.inputs[index]) for index in columns])
     shapes, drive = first_design(theory.shapes, 2), first_design(model.input_matrix, 2)[:, list(model.input_index(inputs))]
     sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
     rows = [[channel.name for channel in experiment.outputs].index(name) for name in sensors]
@@ -364,10 +364,8 @@ def _residues(
     )
     own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
     found = [np.real(seen[:, modes] @ felt[modes]) for _, modes in matched]
-    strokes = [is_length(experiment.inputs[index].unit) for index in columns]
-    return normalise(
-        Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), np.array(strokes))
-    )
+    direct = np.isfinite(sizes) & [not is_voltage(experiment.inputs[index].unit) for index in columns]
+    return normalise(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), direct))
 
 
 def _basis(shapes: Array) -> Array:

@@ -41,6 +41,6 @@ def part(start: float, stop: float, text: str = "") -> Generator[None]:
         yield
 
 
-def report(share: float) -> None:
-    """Report the completed share of the current part, 0 to 1."""
-    _FOLLOWER.get()("", share)
+def report(share: float, text: str = "") -> None:
+    """Report the completed share of the current part, 0 to 1; `text` describes it if the part has no text."""
+    _FOLLOWER.get()(text, share)

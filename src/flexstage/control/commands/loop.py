@@ -30,6 +30,7 @@ from flexstage.show.command.displaced import Footing, Place, footing
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
     FEA,
+    Full,
     text_option,
 )
 from flexstage.show.command.output import announce, require_writable, write
@@ -69,6 +70,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     hardware: Annotated[
         Path | None, text_option("--hardware", "FILE.c", "Write the controller for a processor of its own: FILE.c, FILE.h, FILE_test.c.")
     ] = None,
+    full: Full = False,
     float32: Annotated[bool, typer.Option("--float32", help="32-bit numbers in the code of --hardware, instead of 64-bit.")] = False,
     example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Write a commented set-up file to start from, and stop.")] = None,
 ) -> CommandResult | None:
@@ -76,8 +78,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
-    With nothing else given: the lumped model, a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one
-    sample late. Where forces drive the stage, a PID controller.
+    With nothing else given: the lumped model, a PI controller with notches, optimised within a margin of 6 dB, at 10 kHz, one
+    sample late. Where forces drive the stage, a PID controller. --quick tunes it without optimisation.
 
     With --at, --load, --fixed or --temperature: about that operating point.
 
@@ -113,7 +115,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         write_export(found, target)
     if hardware is not None:
         write_hardware(found, hardware, Precision.SINGLE if float32 else Precision.DOUBLE)
-    return _closed(found, stands, model)
+    return _closed(found, stands, model, full=full)
 
 
 def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Identification | None:
@@ -138,12 +140,12 @@ def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model
     )
 
 
-def _closed(found: LoopStudy, stands: Footing, model: Model | None) -> CommandResult:
+def _closed(found: LoopStudy, stands: Footing, model: Model | None, *, full: bool) -> CommandResult:
     """Result of one loop."""
     return CommandResult(
         stands.mechanism,
         lambda: stands.body(found) if stands.operating_point is not None else found,
-        lambda: [*stands.tables(), *_tables(found)],
+        lambda: [*stands.tables(), *(_tables(found) if full else tables.short_tables(found))],
         lambda: pages.loop_report(found),
         model,
         (*stands.warnings, *found.warnings),

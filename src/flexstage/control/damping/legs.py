@@ -152,4 +152,4 @@ def _findings(assembly: Assembly, model: LinearModel, outputs: set[str], asked: 
 def _gauge_findings(gauges: tuple[str, ...], placed: Mapping[str, str]) -> Iterator[Finding]:
     for name in gauges:
         if name not in placed:
-            yield Finding(f"damping.gauges {name}", "the stage has no strain gauge of this name", suggest_nearest(name, placed))
+            yield Finding(f"damping.gauges {name}", "unknown strain gauge", suggest_nearest(name, placed))

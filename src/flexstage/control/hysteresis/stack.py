@@ -196,8 +196,8 @@ def load_hysteresis(path: str | os.PathLike[str]) -> StackHysteresis:
     >>> load_hysteresis("nowhere.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere.toml: there is no such file. Check the path, or write one with "flexstage hysteresis -o".
+    flexstage.base.finding.DesignError: nowhere.toml: file not found. Check the path, or write one with "flexstage hysteresis -o".
     """
     if not Path(path).exists():
-        raise refuse(os.fspath(path), "there is no such file", 'Check the path, or write one with "flexstage hysteresis -o"')
+        raise refuse(os.fspath(path), "file not found", 'Check the path, or write one with "flexstage hysteresis -o"')
     return loads_hysteresis(read_text(path), where=os.fspath(path))

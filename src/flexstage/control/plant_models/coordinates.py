@@ -17,6 +17,8 @@ from flexstage.models.linear.model import Channel, LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
+_REFERENCE = 1.0
+"""Frequency [Hz] by which accelerations of motions without stiffness are compared with displacements."""
 _MISSING = 1e-9
 
 
@@ -128,11 +130,15 @@ def _mixture(kinematics: Kinematics) -> list[Finding]:
 
 
 def _give(kinematics: Kinematics, model: LinearModel | None) -> Array:
-    """Static motion of the coordinates (f, n) per unit input, by an elastic model."""
+    """Static motion of the coordinates (f, n) per unit input, by an elastic model; without stiffness the amplitude at `_REFERENCE`."""
     if model is None:
         raise refuse("loop", "force actuators need an elastic model for the stage's static motion", "Use its lumped model")
     twist = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
-    gain = np.asarray(static_gain(model, twist, kinematics.thrusts).values)
+    if model.floating is None:
+        gain = np.asarray(static_gain(model, twist, kinematics.thrusts).values)
+    else:
+        rows, force = model.output[model.output_index(twist)], model.input_matrix[:, model.input_index(kinematics.thrusts)]
+        gain = rows @ (model.solve(force) + model.floating @ (model.floating.T @ force) / (2.0 * np.pi * _REFERENCE) ** 2)
     return np.real(first_design(kinematics.projection @ gain, 2))
 
 

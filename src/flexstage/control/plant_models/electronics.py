@@ -202,7 +202,7 @@ _Setting = TypeVar("_Setting", AmplifierSettings, GaugeSettings)
 def _by_name(given: _Setting | Mapping[str, _Setting] | None, names: tuple[str, ...], none: _Setting, kind: str) -> dict[str, _Setting]:
     if not isinstance(given, Mapping):
         return dict.fromkeys(names, none if given is None else given)
-    require(Finding(name, f"the stage has no {kind} of this name", suggest_nearest(name, names)) for name in given if name not in names)
+    require(Finding(name, f"unknown {kind}", suggest_nearest(name, names)) for name in given if name not in names)
     return {name: given.get(name, none) for name in names}
 
 

@@ -23,7 +23,7 @@ from flexstage.experiment.records.record import Channel as Recorded
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.eigen import eigen
-from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.model import Channel, LinearModel
 
 _ALIKE, _APART = 0.7, 0.5
 _BESIDE = 0.05
@@ -58,7 +58,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
     late = common_delay(ahead)
     delay = 0.0 if late is None else late.value
     participation = ahead.participation * np.exp(ahead.poles * delay)[:, None]
-    direct = _static_term(ahead, participation, delay)[np.ix_(rows, columns)]
+    direct = _static_term(ahead, participation, delay, mass_line=given.coordinates.forced)[np.ix_(rows, columns)]
     sizes = outer[:, None], 1.0 / inner
     moved = _modal_system(
         found.poles, ahead.shapes[rows] * sizes[0], participation[:, columns] * sizes[1], direct * sizes[0] * sizes[1], given
@@ -71,6 +71,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
         sensors={name: replace(each, filter_order=0) for name, each in given.hardware.sensors.items()},
     )
     system = _together(given, driven, _retuned(given, pairs, found))
+    driven_by = "inputs" if given.coordinates.forced else "strokes"
     copies = (len(system.A) - len(driven.A)) // max(1, len(given.states))
     return Plant(
         system=system,
@@ -84,7 +85,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
         frequencies=found.frequencies,
         ratios=found.damping,
         left_out=0,
-        note=f"strokes to gauges as measured: {len(found.poles)} modes, {1e6 * delay:.4g} us late; ground by the model",
+        note=f"{driven_by} to gauges as measured: {len(found.poles)} modes, {1e6 * delay:.4g} us late; ground by the model",
         provenance=found.provenance,
     )
 
@@ -125,9 +126,12 @@ def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[F
         return
     below = found.frequencies <= _BELOW * given.frequencies[min(len(given.coordinates.names), len(given.frequencies)) - 1]
     count, alike = int(np.sum(below)), int(np.sum(below[pairs.found]))
-    if alike < _LEAST * max(count, 1) or not len(pairs.found):
-        ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
-        theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
+    ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
+    theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
+    if not count:
+        what = f"its modes ({theirs} Hz) are above the lowest of the stage ({ours} Hz): it is probably of another stage, or too short"
+        yield Finding("--record", what, "Record longer or in a lower band, or use the design of the tested stage")
+    elif alike < _LEAST * count or not len(pairs.found):
         what = f"{alike} of its {count} lowest modes ({theirs} Hz) match the stage's ({ours} Hz): it is probably of another stage"
         yield Finding("--record", what, "Use the design of the tested stage; check for exchanged channels with flexstage identify --stage")
 
@@ -157,11 +161,12 @@ def channel_places(loop: Coordinates, found: Identified) -> tuple[list[int], lis
     """Find rows and columns of a loop's gauges and actuators in a test, and the size of the units of both."""
     rows = [[channel.name for channel in found.outputs].index(name) for name in loop.gauges]
     columns = [[channel.name for channel in found.inputs].index(name) for name in loop.actuators]
-    return rows, columns, _sizes(found.outputs, rows), _sizes(found.inputs, columns)
+    return rows, columns, _sizes(found.outputs, rows, loop.readings()), _sizes(found.inputs, columns, loop.commands())
 
 
-def _sizes(channels: tuple[Recorded, ...], chosen: list[int]) -> Array:
-    return np.array([float(dimension_of(channels[number].unit).size) for number in chosen])
+def _sizes(channels: tuple[Recorded, ...], chosen: list[int], own: tuple[Channel, ...]) -> Array:
+    pairs = zip(chosen, own, strict=True)
+    return np.array([float(dimension_of(channels[number].unit).size / dimension_of(each.unit).size) for number, each in pairs])
 
 
 def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
@@ -182,16 +187,22 @@ def _lagged(moved: System, given: Plant, lags: Array) -> System:
     return connect([ahead, seen], {}, given.coordinates.commands(), moved.output_names)
 
 
-def _static_term(found: Identified, participation: Array, delay: float) -> Array:
-    """Residual real constant (p, m) of the responses after the modes, by least squares up to the highest mode."""
+def _static_term(found: Identified, participation: Array, delay: float, *, mass_line: bool) -> Array:
+    """Residual real constant (p, m) of the responses after the modes, by least squares up to the highest mode.
+
+    With the `mass_line`, all lines count, by relative errors: loops on forces cross over above the modes, where the motion is small.
+    """
     lines = found.responses.frequencies
-    chosen = (lines >= found.band[0]) & (lines <= min(found.band[1], float(np.max(found.frequencies))))
+    highest = np.inf if mass_line else float(np.max(found.frequencies))
+    chosen = (lines >= found.band[0]) & (lines <= min(found.band[1], highest))
     lines = lines[chosen]
     earlier = np.exp(2j * np.pi * lines * delay)[:, None, None]
-    left = found.responses.values[chosen] * earlier - modal_sum(lines, found.poles, found.shapes, participation)
+    modal = modal_sum(lines, found.poles, found.shapes, participation)
+    left = found.responses.values[chosen] * earlier - modal
     away = np.min(np.abs(lines[:, None] / found.frequencies - 1.0) / found.damping, axis=1)
-    weights = np.minimum(away / 5.0, 1.0) ** 2
-    return np.real(np.tensordot(weights, left, axes=1)) / np.sum(weights)
+    weights = np.broadcast_to(np.minimum(away / 5.0, 1.0)[:, None, None] ** 2, left.shape)
+    weights = weights / np.abs(modal) ** 2 if mass_line else weights
+    return np.real(np.sum(weights * left, axis=0)) / np.sum(weights, axis=0)
 
 
 def _modal_system(poles: Array, shapes: Array, drives: Array, direct: Array, given: Plant) -> System:

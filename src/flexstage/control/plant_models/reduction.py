@@ -45,7 +45,7 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 def resonances(given: Plant) -> Array:
     """Compute the resonance (k,) of every mode between strokes and pose, with a static stroke-to-pose gain of 1.
 
-    With both as platform motions in lengths it is |c| |b| / (2 zeta omega^2).
+    With both as platform motions in lengths it is |c| |b| / (2 zeta omega^2), infinite at 0 Hz.
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # one of them is the guide's own, 1/(2 zeta) = 50
@@ -61,7 +61,8 @@ def resonances(given: Plant) -> Array:
         shape = loop.scale * (loop.pose @ stage.C[:, place])
         force = (stage.B[rate] @ loop.strokes) / loop.scale
         damped = 2.0 * max(float(ratio), 1e-6) * (2.0 * np.pi * frequency) ** 2
-        sizes[index] = float(np.linalg.norm(shape) * np.linalg.norm(force)) / damped
+        size = float(np.linalg.norm(shape) * np.linalg.norm(force))
+        sizes[index] = size / damped if damped > 0.0 else np.inf
     return sizes
 
 

@@ -174,7 +174,7 @@ def _modes(closed: Loop, name: str) -> str:
     """A mode and those with nearly the same frequency; a plant may have retained others than the lowest."""
     kept = mode_names(closed.plant)
     frequencies = dict(zip(kept, closed.plant.frequencies.tolist(), strict=True))
-    alike = [each for each in kept if abs(frequencies[each] / frequencies[name] - 1.0) < _ALIKE]
+    alike = [each for each in kept if abs(frequencies[each] - frequencies[name]) <= _ALIKE * frequencies[name]]
     shown = ", ".join(each.removeprefix("mode") for each in alike)
     return f"mode{'s' if len(alike) > 1 else ''} {shown} at {frequencies[name]:.4g} Hz"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
@@ -13,10 +13,10 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout, Mark
-from flexstage.base.units.quantity import ANGLE, FREQUENCY, SHORT_TIME
+from flexstage.base.units.quantity import ANGLE, FREQUENCY, RATIO, SHORT_TIME
 from flexstage.control.robustness.disk import Edge, disk_margin
 from flexstage.control.robustness.stability import require_stable
-from flexstage.control.systems.closed import Loop, LoopBreak, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, loop, open_at
 from flexstage.control.systems.curves import Curves, curves, roots, sensitivity
 from flexstage.control.systems.norm import Peak, peak
 from flexstage.control.systems.system import System, select
@@ -151,6 +151,33 @@ def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
     scaled = replace(whole, B=whole.B / scale, C=whole.C * scale[:, None], D=whole.D * scale[:, None] / scale)
     rest = replace(scaled, C=-scaled.C, D=np.eye(len(scale)) - scaled.D)
     return Peaks(cut, peak(scaled), peak(rest))
+
+
+@dataclass(frozen=True)
+class ShiftedPeak:
+    """Peak sensitivity Ms with all modes of the plant off by a relative `shift`, the worse of both ways; infinite: unstable."""
+
+    TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted either way", "peak", head="shift")
+
+    shift: Annotated[float, RATIO]
+    peak: Annotated[float, Heading("peak sensitivity Ms", digits=4, infinite="unstable")]
+
+
+def shifted_peaks(closed: Loop, shifts: Iterable[float] = (0.0, 0.02, 0.05, 0.1)) -> tuple[ShiftedPeak, ...]:
+    """Peak sensitivity of a sampled loop at the pose with all modes shifted: time of the plant runs faster, of the controller it does not.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> [round(each.peak, 2) for each in shifted_peaks(integral_loop(), (0.0, 0.1))]
+    [1.43, 1.52]
+    """
+    return tuple(ShiftedPeak(shift, max(_shifted_peak(closed, offset) for offset in {-shift, shift})) for shift in shifts)
+
+
+def _shifted_peak(closed: Loop, offset: float) -> float:
+    given, slower = closed.plant.hardware, 1.0 + offset
+    hardware = replace(given, rate=None if given.rate is None else given.rate / slower, delay=given.delay * slower)
+    moved = loop(replace(closed.plant, hardware=hardware), replace(closed.controller, step=hardware.step))
+    return peaks(moved, LoopBreak.POSE).sensitivity.value if moved.system.growth < 0.0 else np.inf
 
 
 @dataclass(frozen=True, eq=False)

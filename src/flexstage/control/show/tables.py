@@ -44,6 +44,16 @@ def loop_tables(found: LoopStudy) -> list[Table | None]:
     return [loop_table(found), *_charge_tables(found), *_damping_tables(found), *_controller_tables(found)]
 
 
+def short_tables(found: LoopStudy) -> list[Table | str | None]:
+    """The loop, bandwidth, margins, time responses and positioning noise, without notes; of an unstable loop with the reason."""
+    margins = margin_tables(replace(found, disk_margin=None))
+    parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), noise_table(found)]
+    shown = [replace(each, notes=()) for each in (loop_table(found), *margins, *parts) if each is not None]
+    if not found.stability.stable:
+        shown[0] = loop_table(found)
+    return [*shown, "All tables and notes: --full. With pictures, in one page: --report FILE."]
+
+
 def loop_table(found: LoopStudy) -> Table:
     """Table of the loop and its stability.
 
@@ -138,7 +148,8 @@ def _controller_tables(found: LoopStudy) -> list[Table | None]:
 def margin_tables(found: LoopStudy) -> list[Table | None]:
     """Tabulate bandwidth and margins by coordinate; none in open loop."""
     margins = None if found.margins is None else found.margins.loops
-    return [result_table(each) for each in (found.bandwidths, margins, found.disk_margin) if each is not None]
+    shifted = {percent(each.shift): each for each in found.shifted_peaks}
+    return [result_table(each) for each in (found.bandwidths, margins, found.disk_margin, shifted or None) if each is not None]
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:

@@ -44,7 +44,7 @@ def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> Inf
 def _findings(named: Mapping[str, Array], known: list[str], count: int, readings: list[str]) -> Iterator[Finding]:
     for name, values in named.items():
         if name not in known:
-            yield Finding(name, "the loop has no input of this name", suggest_nearest(name, known))
+            yield Finding(name, "unknown input of the loop", suggest_nearest(name, known))
         elif values.shape != (count,):
             yield Finding(name, f"wrong length (got {values.shape}, expected {count} samples as the reference)", "Use equal lengths")
         elif name not in readings and not np.all(np.isfinite(values)):

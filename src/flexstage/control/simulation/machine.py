@@ -218,7 +218,7 @@ def _findings(given: Machine) -> Iterator[Finding]:
 def _missing(kind: str, known: tuple[str, ...], wanted: tuple[str, ...]) -> Iterator[Finding]:
     for name in wanted:
         if name not in known:
-            yield Finding(f"{kind}: {name}", "there is no channel of this name", suggest_nearest(name, known))
+            yield Finding(f"{kind}: {name}", "unknown channel", suggest_nearest(name, known))
 
 
 def _electric(given: Machine) -> Iterator[Finding]:

@@ -98,4 +98,4 @@ def _findings(given: Plant, floor: Mapping[str, Spectrum]) -> Iterator[Finding]:
     known = [name for name in given.system.input_names if name.startswith("ground.")]
     for name in floor:
         if name not in known:
-            yield Finding(name, "the ground has no such motion", suggest_nearest(name, known))
+            yield Finding(name, "unknown motion of the ground", suggest_nearest(name, known))

@@ -52,7 +52,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
 
 def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
     if isinstance(found, FileMotion) and not Path(found.file).is_file():
-        yield Finding(found.file, "there is no such file", "Check the path: a CSV table of times and poses")
+        yield Finding(found.file, "file not found", "Check the path: a CSV table of times and poses")
     pair = (found.fast, found.slow) if isinstance(found, RasterMotion) else None
     pair = (found.first, found.second) if isinstance(found, SpiralMotion) else pair
     if pair is not None and pair[0] is pair[1]:
@@ -125,7 +125,7 @@ def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
         yield Finding("follow.method", what, "Use a raster or a sine as trajectory, or tracking by learning or the inverse")
     shaped = found.method in (Following.ZV, Following.ZVD)
     if shaped and found.frequency is None:
-        yield Finding("follow.frequency", "a shaper needs the frequency of its mode", 'Use for example frequency = "106 Hz"')
+        yield Finding("follow.frequency", "a shaper needs the frequency of its mode", 'Use e.g. frequency = "106 Hz"')
     if not shaped and found.frequency is not None:
         yield Finding("follow.frequency", f"{found.method.value} has no mode of its own", "Leave it out, or take zv or zvd")
 
@@ -145,6 +145,8 @@ def _goal(found: ControllerSetup) -> Iterator[Finding]:
     """Findings for keys that contradict an objective."""
     if found.goal is None:
         return
+    if found.quick:
+        yield Finding("controller.goal", "quick tuning has no goal", "Leave one of them out (--quick, --tune-for)")
     if found.law not in (*SEARCHED, ControllerKind.NONE):
         advice = "Take kind pi, pid or lqg, or leave it out"
         yield Finding("controller.goal", f"a controller of kind {found.law.value} has no optimisation", advice)
@@ -161,7 +163,7 @@ def _loops(found: ControllerSetup) -> Iterator[Finding]:
         if names.count(name) > 1:
             yield Finding("controller.loops", f"{name} stands {names.count(name)} times", "State the numbers of a loop once")
     if not all(each.axes for each in found.loops):
-        yield Finding("controller.loops", "the axes of the numbers are missing", 'Use for example axes = ["x", "y"]')
+        yield Finding("controller.loops", "the axes of the numbers are missing", 'Use e.g. axes = ["x", "y"]')
     if found.loops and not found.stated and found.law in (ControllerKind.PI, ControllerKind.PID):
         yield Finding("controller.loops", "loops are stated without gains", "Give proportional or integral, or leave loops out")
     if found.prefilter is not None and not found.stated:

@@ -20,7 +20,9 @@ class ControllerKind(Enum):
     """Open loop."""
 
 
-SEARCHED = (ControllerKind.PI, ControllerKind.PID, ControllerKind.LQG)
+SEARCHED_BY_DEFAULT = (ControllerKind.PI, ControllerKind.PID)
+"""Kinds that are optimised without a specified goal: LQG takes minutes."""
+SEARCHED = (*SEARCHED_BY_DEFAULT, ControllerKind.LQG)
 """Kinds with optimisation-based tuning; the others are tuned to the highest bandwidth."""
 
 

@@ -96,8 +96,10 @@ class Control:
         return None if self.tuning is None else self.tuning.bandwidth
 
 
-def make_controller(given: ResolvedSetup, gains: Array) -> Control:
+def make_controller(given: ResolvedSetup, gains: Array, known: tuple[Tuning, ...] = ()) -> Control:
     """Design the controller of a set-up; `gains` (n, f) map poses to strokes.
+
+    `known` are tunings of the same loops with fewer modes, from which optimisation starts.
 
     Raises `DesignError` for a bandwidth beyond the maximum, with this maximum and the reason, and for invalid parameters.
 
@@ -116,7 +118,7 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     if asked.stated:
         made_of = _of_numbers(given, loops, forward)
         return Control(made_of.system(given.step), made_of, None, gains)
-    goal = {} if asked.goal is None else vars(asked.goal)
+    goal = {} if asked.search_goal is None else vars(asked.search_goal)
     spec = TuningSpec(
         family=FAMILIES.get(asked.law.value) or CONTROLLERS.all[asked.law.value],
         bandwidth=asked.bandwidth,
@@ -128,7 +130,7 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
         feedforward=forward,
         **goal,
     )
-    found = (find if goal else tune)(given.plant, loops, spec)
+    found = find(given.plant, loops, spec, known) if goal else tune(given.plant, loops, spec)
     return Control(found.controller.system(given.step), found.controller, found, gains)
 
 

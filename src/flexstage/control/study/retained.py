@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
@@ -15,11 +14,11 @@ from flexstage.control.robustness.stability_margins import margins, peaks
 from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import ResolvedSetup, retain_modes
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
+from flexstage.control.tuning.spec import Tuning
+from flexstage.experiment.progress import part
 
 
-def control_and_modes(
-    given: ResolvedSetup, gains: Array, tell: Callable[[str], None] = lambda _: None
-) -> tuple[ResolvedSetup, Control, Retention]:
+def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup, Control, Retention]:
     """Design the controller on the retained modes, retain the significant modes with it, and repeat until no mode is added.
 
     Modes are only added: removal could cycle. Modes specified by the set-up are kept. `gains` (n, f) map poses to strokes. Raises
@@ -27,27 +26,30 @@ def control_and_modes(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.resolve import resolve
-    >>> from flexstage.control.study.setup import LoopSetup
-    >>> given = resolve(parallelogram(), LoopSetup())
+    >>> from flexstage.control.study.setup import ControllerSetup, LoopSetup
+    >>> given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(quick=True)))
     >>> given, control, found = control_and_modes(given, given.plant.coordinates.strokes)
     >>> found.retained, found.total, found.complete
     (1, 18, True)
     """
-    asked = given.setup.controller
-    if asked.goal is not None and given.plant.coordinates.forced:  # optimisation is slow: start with the modes of the plain tuning
-        plain = replace(given, setup=replace(given.setup, controller=replace(asked, goal=None)))
-        with suppress(DesignError):
-            given = replace(control_and_modes(plain, gains, tell)[0], setup=given.setup)
-    tell("tuning")
-    control = make_controller(given, gains)
+    asked, known = given.setup.controller, list[Tuning]()
+    if asked.search_goal is not None:  # optimisation is slow: start with the modes of the plain tuning
+        plain = replace(given, setup=replace(given.setup, controller=replace(asked, goal=None, quick=True)))
+        with suppress(DesignError), part(0.0, 0.2):
+            begun, control, _ = control_and_modes(plain, gains)
+            given = replace(begun, setup=given.setup)
+            known += [control.tuning] if control.tuning is not None else []
+    with part(0.2, 0.8):
+        control = make_controller(given, gains, tuple(known))
     while True:
         found = retention(given.whole, loop(given.plant, control.system))
         if found.complete or given.setup.modes is not None:
             return given, control, found
         given = retain_modes(given, found.wanted)
         if found.retune:
-            tell(f"tuning with {len(given.plant.frequencies)} modes")
-            control = make_controller(given, gains)
+            known += [control.tuning] if control.tuning is not None else []
+            with part(0.8, 1.0, f"tuning with {len(given.plant.frequencies)} modes"):
+                control = make_controller(given, gains, tuple(known))
 
 
 def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:

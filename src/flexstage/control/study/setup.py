@@ -28,7 +28,18 @@ from flexstage.base.units.quantity import (
     Bound,
 )
 from flexstage.control.controllers.kinds import CONTROLLERS
-from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Following, Notching, OfferedKind, StackKind
+from flexstage.control.study.choices import (
+    SEARCHED_BY_DEFAULT,
+    Axes,
+    Axis,
+    Compensation,
+    ControllerKind,
+    Criterion,
+    Following,
+    Notching,
+    OfferedKind,
+    StackKind,
+)
 from flexstage.control.study.hardware.amplifier_kinds import AMPLIFIERS
 from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup
 from flexstage.control.tuning.objective import TuningObjective
@@ -167,8 +178,9 @@ class ControllerSetup(CheckedFields):
     The default kind is PI, for force-driven stages PID (unless gains are specified). Specification: `bandwidth` (the gain crossover;
     default: the highest that `sensitivity` allows) and `sensitivity`, the maximum peak of S. Gains: `proportional` (strokes or motion per
     error), `integral` rate, `derivative` time and its `filter` corner, common to all loops; `loops` specify individual ones. `notches` are
-    additional to automatic ones. `prefilter` shapes the reference. With a `goal` laws and notches are optimised instead, within
-    `sensitivity`.
+    additional to automatic ones. `prefilter` shapes the reference.
+
+    PI and PID are optimised for a `goal` within `sensitivity`, by default balance. `quick`, a bandwidth, gains or notches disable this.
     """
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
@@ -184,6 +196,13 @@ class ControllerSetup(CheckedFields):
     loops: tuple[LoopNumbers, ...] = ()
     prefilter: PrefilterSetup | None = None
     goal: GoalSetup | None = None
+    quick: bool = False
+
+    @property
+    def search_goal(self) -> GoalSetup | None:
+        """Goal of the optimisation-based tuning in force; absent: plain tuning, or none."""
+        plain = self.quick or self.stated or self.bandwidth is not None or self.notches or self.notching is Notching.NONE
+        return self.goal if self.goal is not None or plain or self.law not in SEARCHED_BY_DEFAULT else GoalSetup()
 
     @property
     def stated(self) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -29,7 +30,17 @@ from flexstage.control.plant_models.retention import Retention
 from flexstage.control.robustness.disk import DiskMargin, disk_margins
 from flexstage.control.robustness.measured_margins import MeasuredMargins, coherence_findings, measured_margins
 from flexstage.control.robustness.stability import Verdict, require_stable, verdict
-from flexstage.control.robustness.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
+from flexstage.control.robustness.stability_margins import (
+    Bandwidths,
+    Margins,
+    Peaks,
+    ShiftedPeak,
+    bandwidths,
+    crosstalk,
+    margins,
+    peaks,
+    shifted_peaks,
+)
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.control import Control
@@ -42,7 +53,7 @@ from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stack
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
 from flexstage.control.systems.curves import Curves, curves
 from flexstage.experiment.pipeline import Identification
-from flexstage.experiment.progress import Told
+from flexstage.experiment.progress import Told, followed, part
 from flexstage.mechanism.mechanism import Mechanism
 
 _LOWEST = 0.1
@@ -129,6 +140,11 @@ class LoopStudy(InNotebook):
         most = np.max([np.max(np.abs(run.simulated.reference), axis=0, initial=0.0) for run in self.runs], axis=0)
         return second_order(given.mechanism, given.kinematics, dict(zip(given.plant.coordinates.names, most, strict=True)))
 
+    @cached_property
+    def shifted_peaks(self) -> Annotated[tuple[ShiftedPeak, ...], VIEW]:
+        """Peak sensitivity with all modes shifted; none in open loop."""
+        return () if self.peaks is None else shifted_peaks(self.closed)
+
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
         """Highest platform mode, counting as many as loop coordinates."""
@@ -167,7 +183,8 @@ def loop_study(
     Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for an unstable loop with the cause.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> found = loop_study(parallelogram())
+    >>> from flexstage.control.study.setup import ControllerSetup
+    >>> found = loop_study(parallelogram(), LoopSetup(controller=ControllerSetup(quick=True)))
     >>> found.stability.stable, found.runs[0].course.name
     (True, 'x')
     """
@@ -176,7 +193,8 @@ def loop_study(
     given = resolve(mechanism, setup or LoopSetup(), there, solid)
     given = given if test is None else on_test(given, test.found)
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
-    given, control, retained = control_and_modes(given, pose_gains(given, lost), lambda text: said(text, 0.05))
+    with followed(said), part(0.05, 0.6):
+        given, control, retained = control_and_modes(given, pose_gains(given, lost))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)

@@ -210,7 +210,7 @@ def select(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> Sys
 
 def _indices(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[int]:
     names = tuple(names)
-    require(Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in names if name not in known)
+    require(Finding(name, f"unknown {kind}", suggest_nearest(name, known)) for name in names if name not in known)
     return [known.index(name) for name in names]
 
 
@@ -281,7 +281,7 @@ def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Chan
     sources = (*external, *whole.output_names)
     for name in links:
         if name not in whole.input_names:
-            yield Finding(name, "no system has an input of this name", suggest_nearest(name, whole.input_names))
+            yield Finding(name, "unknown input", suggest_nearest(name, whole.input_names))
         for term in links[name]:
             if term not in sources:
                 yield Finding(f"link to {name}", f"nothing is called '{term}'", suggest_nearest(term, sources))

@@ -52,7 +52,7 @@ def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array) 
     """
     advice = "The loop's coordinates are " + ", ".join(coordinates)
     require(
-        Finding(f"trajectory: {name}", "the loop has no coordinate of this name", f"{suggest_nearest(name, coordinates)}. {advice}")
+        Finding(f"trajectory: {name}", "unknown coordinate", f"{suggest_nearest(name, coordinates)}. {advice}")
         for name in trajectory.coordinates
         if name not in coordinates
     )

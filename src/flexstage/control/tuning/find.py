@@ -18,15 +18,16 @@ from flexstage.control.tuning.judge import closed_growth, judge_loop
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.outcome import Outcome, outcome
 from flexstage.control.tuning.search import (
-    STABLE,
     Field,
     Found,
     advance,
     excess,
+    farthest,
     field,
     known_loops,
     last_mode,
     one_loops,
+    resume,
     search,
     tighten,
     variants,
@@ -49,14 +50,14 @@ _EXPECTED = 1e-9
 """Default density [m/Hz^0.5] of stroke noise assumed by an observer."""
 
 
-def find(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
+def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...] = ()) -> Tuning:
     """Optimise a controller for the objective of a specification.
 
     Optimises law and notches of every loop, with their width and depth. A crossover beyond a mode is possible if margins hold for all mode
     shifts. Starts are a grid around the modes, and the controller of highest bandwidth (`tune`): by itself with a crossover beyond the
     modes, and if better than the grid's result. The result is at least as good for the objective (`merit`). It is evaluated by eigenvalues
-    and by the coupled peak of S of the sampled loop, with all modes off by the spread. Raises `DesignError` for an unstable open loop, for
-    contradictory requirements, and for each unmet requirement.
+    and by the coupled peak of S of the sampled loop, with all modes off by the spread. `known` tunings of a plant with fewer modes are
+    tried first. Raises `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -69,24 +70,41 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     require(_findings(plant, spec))
     loops = platform_loops(loops.coordinates) if spec.family == LQG_FAMILY else loops
     between = (-0.5 * spec.spread, 0.5 * spec.spread)
-    seen = view(plant, loops, spec.spread, tuple(dict.fromkeys([*(each.offset for each in variants(spec)), *between])))
+    seen = view(plant, loops, spec.spread, tuple(sorted({*(each.offset for each in variants(spec)), *between}, key=abs)))
     require(_growth_findings(seen))
-    begun, refused = _highest(seen, spec)
+    plainly = [each for each in known if each.spec.objective is None and each.spec.spread == spec.spread]
+    begun, refused = (plainly[0], ()) if plainly else _highest(seen, spec)
     within = field(seen, spec, fast=0.0 if begun is None else begun.bandwidth)
     plain = None if begun is None else _begun(within, begun.controller)
-    known = None if begun is None else begun.controller
-    if isinstance(known, LQG):
-        others = [_weighed(within, known)]
-    else:
-        beyond = within.fast > last_mode(seen)
-        others = [None if beyond else _sought(within, lambda each: search(each, spec.family))]
-        if known is not None and not _is_beaten(within, known, others[0]):
-            others.append(_sought(within, lambda each: advance(each, known)))
-    best = _best_of(spec, plain, [each for each in (plain, *others) if each is not None])
+    found = [] if plain is None else [plain]
+    try:
+        for each in _searched(within, None if begun is None else begun.controller, known):
+            found += [] if each is None else [each]
+    except KeyboardInterrupt:
+        best = _best_of(spec, plain, found)
+        reason = "none" if begun is None else begun.reason if best is None else best.tuning.reason
+        raise KeyboardInterrupt(f"The best controller so far: {reason}.") from None
+    best = _best_of(spec, plain, found)
+    if best is None and begun is not None and not any((spec.rejection, spec.settling, spec.delay_margin)):
+        return replace(begun, reason=f"{begun.reason}; none stable with modes up to {100.0 * farthest(spec):g} % off was found")
     if best is None:
         raise DesignError([_none_found(spec, refused)])
     require(best.unmet)
     return best.tuning
+
+
+def _searched(within: Field, first: Decentralised | LQG | None, known: tuple[Tuning, ...]) -> Iterator[_Candidate | None]:
+    """Results of the searches in turn: on from a result for fewer modes, from a grid of starts, on from the `first` controller."""
+    if isinstance(first, LQG):
+        yield _weighed(within, first)
+        return
+    last, before = None, known[-1].controller if known and known[-1].spec.objective is not None else None
+    if isinstance(before, Decentralised):
+        yield (last := _sought(within, lambda each: resume(each, before)))
+    if last is None and within.fast <= last_mode(within.seen):
+        yield (last := _sought(within, lambda each: search(each, within.spec.family)))
+    if first is not None and not _is_beaten(within, first, last):
+        yield _sought(within, lambda each: advance(each, first))
 
 
 def _is_beaten(within: Field, known: Decentralised, sought: _Candidate | None) -> bool:
@@ -168,7 +186,7 @@ def _rounds(
     """
     found = begun
     for spec in _tighter(within.spec, _TIGHTER):
-        tried = field(within.seen, spec, places, within.fast)
+        tried = field(within.seen, spec, places, within.fast, within.work)
         if found is not None:
             yield tried, tighten(tried, found)
         found = seek(tried)
@@ -202,7 +220,7 @@ def _none_found(spec: TuningSpec, refused: tuple[Finding, ...]) -> Finding:
         *([f"has a delay margin of {1e3 * spec.delay_margin:g} ms"] if spec.delay_margin else []),
     ]
     advice = "allow a higher peak of S or a smaller mode spread, or use another kind"
-    beyond = f", stable with modes up to {100.0 * STABLE * spec.spread:g} % off," if spec.spread else ""
+    beyond = f", stable with modes up to {100.0 * farthest(spec):g} % off," if spec.spread else ""
     that = f" that {' and '.join(wanted)}" if wanted else ""
     before = "".join(f"; without a search {each.what}" for each in refused)
     what = f"no {spec.family.name} found within a peak of S of {spec.sensitivity:g}{beyond}{that}{before}"
@@ -254,10 +272,9 @@ def _growth_findings(seen: View) -> Iterator[Finding]:
 def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
     """Peak and bandwidths within the spread; stability also beyond it."""
     seen, system = within.seen, controller.system(within.seen.step)
-    near = [place for place, offset in enumerate(seen.offsets) if abs(offset) <= 1.001 * within.spec.spread]
-    systems, offsets = (tuple(each[place] for place in near) for each in (seen.systems, seen.offsets))
-    judged = judge_loop(replace(seen, systems=systems, offsets=offsets, responses=seen.responses[near]), system)
-    far = [closed_growth(each, system) for place, each in enumerate(seen.systems) if place not in near]
+    near = len(seen.responses)
+    judged = judge_loop(replace(seen, systems=seen.systems[:near], offsets=seen.offsets[:near]), system)
+    far = [closed_growth(each, system) for each in seen.systems[near:]]
     return replace(judged, growth=max(judged.growth, *far)) if far else judged
 
 
@@ -297,7 +314,7 @@ def _settling(loop: OneLoop, tried: Prefilter) -> tuple[float, float]:
 def _sentence(within: Field, found: Outcome, judged: Judgement) -> str:
     spec = within.spec
     reached = ", ".join(f"{name} {value:.3g}" for name, value in zip(within.seen.loops.names, found.rejection[0], strict=True))
-    off, beyond = (f" with modes up to {100.0 * spec.spread:g} % off", f", stable up to {100.0 * STABLE * spec.spread:g} %")
+    off, beyond = (f" with modes up to {100.0 * spec.spread:g} % off", f", stable up to {100.0 * farthest(spec):g} %")
     peak = f"the peak of S{off if spec.spread else ''} is {judged.peak:.3g}{beyond if spec.spread else ''}"
     objective = "" if spec.objective is None else f" for {spec.objective.value}"
     return f"{spec.family.name} optimised{objective}: sensitivity crossover {reached} Hz; {peak}"

@@ -29,6 +29,8 @@ _SAMPLES = 512
 _LONGEST = 0.7
 """Largest change of a parameter in one descent step, a factor of 2: beyond, the quadratic model is invalid."""
 _DAMPINGS = (1e-6, 1e6)
+_TREND, _STALLED, _NEAR_ENOUGH = 10, 0.97, 10.0
+"""Tries over which the trend of a descent is taken; its ratio from which on it has stalled; how many times `enough` it has to lead to."""
 _STIFFER, _SOFTER = 4.0, 3.0
 """Limits of the Levenberg-Marquardt damping, and its factors of change."""
 
@@ -176,7 +178,7 @@ Squares: TypeAlias = tuple[float, Array, Array]
 def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[Array, Array], tries: int, enough: float = 0.0) -> Array:
     """Minimise by the Levenberg-Marquardt method between low and high, or until half the sum is `enough`.
 
-    Points where `at` returns none (unstable) are rejected.
+    Points where `at` returns none (unstable) are rejected. It ends early if the trend of the last steps does not lead to `enough`.
 
     >>> bowl = lambda point: (0.5 * float(point @ point), point, np.eye(1))
     >>> found = descend(bowl, np.array([2.0]), (np.array([-5.0]), np.array([5.0])), 20)
@@ -188,9 +190,11 @@ def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[A
     here = at(point)
     if here is None:
         return start
+    costs: list[float] = []
     for _ in range(tries):
         cost, gradient, curvature = here
-        if cost <= enough:
+        costs.append(cost)
+        if cost <= enough or not _is_promising(costs, tries, enough):
             break
         free = ~((point <= low) & (gradient > 0.0) | (point >= high) & (gradient < 0.0))
         step = np.zeros(len(point))
@@ -207,6 +211,14 @@ def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[A
         if cost - there[0] < 1e-6 * cost:
             break
     return point
+
+
+def _is_promising(costs: list[float], tries: int, enough: float) -> bool:
+    """Whether half sums fall, and fast enough to come near `enough` by the last try."""
+    if len(costs) <= _TREND:
+        return True
+    trend = costs[-1] / costs[-1 - _TREND]
+    return trend < _STALLED and (not enough or costs[-1] * trend ** ((tries - len(costs)) / _TREND) < _NEAR_ENOUGH * enough)
 
 
 def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:

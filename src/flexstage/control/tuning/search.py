@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from dataclasses import field as record_field
 from functools import cached_property, partial
 from typing import cast
 
@@ -12,6 +14,7 @@ import scipy
 
 from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.base.number import Array
+from flexstage.base.processes.progress import duration
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.notch import Notch
@@ -19,17 +22,19 @@ from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.systems.system import select
 from flexstage.control.tuning.fit import STIFF, Bounds, OneLoop, Squares, descend, keeps, sum_squares
+from flexstage.control.tuning.judge import highest_gain
 from flexstage.control.tuning.laws import PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.view import View, first_alike, resonances
+from flexstage.experiment.progress import report
 
-STABLE = 2.5
-"""Factor of the mode spread up to which the loop must remain stable."""
 _INSIDE = 0.97
 """Share of the peak limit for a single loop: reserve for peaks between frequencies, and for coupling."""
-_LOOSER, _LATER = 1.5, 8.0
+_FAR, _STABLE = 0.1, 2.5
+"""Least shift of all modes up to which loops remain stable; for a larger spread this multiple of it. S is limited there, too."""
+_LOOSER, _LOOSEST, _LATER = 1.5, 4.0, 8.0
 """Limits of |S|, relative to the specified one: for shifts where the loop need only be stable; and at the delay margin.
 
 Both are finite so that the descent notices a stability limit early: at 8, L is an eighth from -1, at a delay 3 % above the required one.
@@ -60,10 +65,13 @@ _SCALES = np.geomspace(0.01, 20.0, 40)
 """Gains of starts, 20 % apart: loops are in metres with static gain 1, so that 1 is a crossover near the mode."""
 _LEVELS, _STARTS = 6, 4
 """Reductions of the target frequency before starts are abandoned; number of starts pursued, those of highest rejection."""
-_RATIO, _FINEST = 1.4, 1.08
-"""Factor of the target frequency, its root after a failure, down to this limit: results are within 8 % of the limit."""
-_KICKS, _KICK, _TURN = 4, 0.25, 2.4
+_RATIO, _FINEST = 1.4, 1.1
+"""Factor of the target frequency, its root after a failure, down to this limit: results are within 18 % of the limit."""
+_KICKS, _KICK, _TURN = 2, 0.25, 2.4
 """Restarts around a point: their number, distance 0.25 in the logarithms, and directions sin(2.4 n k); 2.4 rad is near the golden angle."""
+_ALLOWED, _EVALUATIONS, _AS_MANY = 1e7, 1000, 2000
+"""Limit of evaluated responses, about 8 s of CPU time at 3 GHz; limit of evaluations of all loops; responses with the CPU time of the calls
+of one evaluation."""
 _NEARLY = 0.03
 """Excess of bounds up to which a start counts as well damped: only such starts bound the noise."""
 _LEFT = 0.015
@@ -123,6 +131,27 @@ _CALM, _KEEP, _LAST = Effort(1.0, 60), Effort(0.05, 60, 0.005), Effort(0.3, 20)
 once."""
 
 
+class Work:
+    """Counts the responses that a search evaluates, of those `allowed`, and reports how far it is."""
+
+    def __init__(self, allowed: float = _ALLOWED) -> None:
+        self.allowed, self.spent, self._begun = allowed, 0.0, time.process_time()
+
+    def affordable(self, tries: int, size: int) -> int:
+        """Tries of a descent, each of so many responses, that are left."""
+        return min(tries, int(max(self.allowed - self.spent, 0.0) / size))
+
+    def count(self, size: int) -> None:
+        """Count evaluated responses."""
+        self.spent += size
+
+    def report(self) -> None:
+        """Report the share that is done, and how long all of it may take."""
+        share = min(self.spent / self.allowed, 1.0)
+        if share:
+            report(share, f"optimising the controller, at most {duration((time.process_time() - self._begun) / share)}")
+
+
 @dataclass(frozen=True)
 class Variant:
     """Variant of the plant: modes shifted by `offset`, commands times `gain`, delayed by `later` [s]; and its `limit` of |S|.
@@ -146,19 +175,24 @@ def variants(spec: TuningSpec) -> tuple[Variant, ...]:
 
     >>> from flexstage.control.tuning.laws import PI_FAMILY
     >>> [each.offset for each in variants(TuningSpec(PI_FAMILY, spread=0.02))]
-    [0.0, -0.02, 0.02, -0.05, 0.05]
+    [0.0, -0.02, 0.02, -0.05, 0.05, -0.1, 0.1]
     """
     limit, spread = spec.sensitivity, spec.spread
     near = (-spread, spread) if spread else ()
-    far = (-STABLE * spread, STABLE * spread) if spread else ()
+    far = {_STABLE * spread: _LOOSER, farthest(spec): _LOOSEST} if spread else {}
     gains = (1.0 - spec.gain, 1.0 + spec.gain) if spec.gain else ()
     turns = (*_TURNS, np.inf) if spec.delay_margin else ()
     return (
         *(Variant(offset, 1.0, 0.0, limit) for offset in (0.0, *near)),
-        *(Variant(offset, 1.0, 0.0, _LOOSER * limit) for offset in far),
+        *(Variant(sign * offset, 1.0, 0.0, factor * limit) for offset, factor in far.items() for sign in (-1.0, 1.0)),
         *(Variant(0.0, gain, 0.0, limit) for gain in gains),
         *(Variant(0.0, 1.0, 1.03 * (spec.delay_margin or 0.0), _LATER, turn) for turn in turns),
     )
+
+
+def farthest(spec: TuningSpec) -> float:
+    """Shift of all modes up to which a loop must be stable."""
+    return max(_FAR, _STABLE * spec.spread) if spec.spread else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,6 +218,7 @@ class Field:
     alike: tuple[int, ...]
     allowed: tuple[float, ...] = ()
     fast: float = 0.0
+    work: Work = record_field(default_factory=Work)
 
     @cached_property
     def strokes(self) -> Array:
@@ -197,6 +232,11 @@ class Field:
         return np.stack([self.seen.driven_at(self.variants[place].offset, self.lines[1:]) for place in self.spread])
 
     @property
+    def size(self) -> int:
+        """Responses of an evaluation, of all loops at all frequencies and lines; `_AS_MANY` more stand for calls."""
+        return (self.frequencies.size + len(self.slow) * len(self.lines)) * len(self.alike) + _AS_MANY
+
+    @property
     def spread(self) -> list[int]:
         """Variants with only mode shifts within the spread; the model first."""
         return _spread(self.spec, self.variants)
@@ -206,10 +246,11 @@ def _spread(spec: TuningSpec, cases: tuple[Variant, ...]) -> list[int]:
     return [place for place, each in enumerate(cases) if abs(each.offset) <= spec.spread and each.gain == 1.0 and not each.later]
 
 
-def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0) -> Field:
-    """Construct the field of a search from a view at the offsets of `variants`.
+def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0, work: Work | None = None) -> Field:
+    """Prepare the data of a search from a view at the offsets of `variants`.
 
-    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` as in `Field`.
+    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` as in `Field`; `work` is that of an earlier
+    field whose search continues.
     """
     drive, cases = seen.loops.drive, variants(spec)
     own = _frequencies(seen, max(each.offset for each in cases), places)
@@ -220,7 +261,7 @@ def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: fl
     lines = _lines(seen, fast)
     slow = np.stack([seen.driven_at(cases[place].offset, lines) @ drive for place in _spread(spec, cases)])
     weights = np.sqrt(np.gradient(own))[:, None]
-    return Field(
+    found = Field(
         seen=seen,
         spec=spec,
         variants=cases,
@@ -233,6 +274,7 @@ def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: fl
         alike=tuple(next(first_alike(np.einsum("vfkk->vfk", plants), loop, _SAME)) for loop in range(len(seen.loops.names))),
         fast=fast,
     )
+    return replace(found, work=work or Work(min(_ALLOWED, _EVALUATIONS * found.size)))
 
 
 def last_mode(seen: View) -> float:
@@ -345,6 +387,12 @@ def advance(within: Field, known: Decentralised) -> Found:
             points[loop], reached[loop], noises[loop] = found.points[place], found.reached[place], _noises(part, found)[place]
     points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
     return tighten(within, Found(begun.shapes, tuple(points), tuple(reached), tuple(noises)))
+
+
+def resume(within: Field, known: Decentralised) -> Found:
+    """All loops at once from a known controller, which has to reach what it reaches here."""
+    begun = known_loops(within, known)
+    return tighten(within, replace(begun, reached=tuple(_frequencies_of_aim(within, begun))))
 
 
 def known_loops(within: Field, known: Decentralised) -> Found:
@@ -574,7 +622,8 @@ def _fit_together(within: Field, found: Found, bounds: list[Bounds], effort: Eff
     start = np.concatenate([found.points[loop] for loop in joint.parts])
     limits = [found.shapes[loop].bounds(found.points[loop]) for loop in joint.parts]
     low, high = (np.concatenate([pair[side] for pair in limits]) for side in (0, 1))
-    best = joint.moved(descend(joint.at, start, (low, high), effort.tries, effort.enough))
+    within.work.report()
+    best = joint.moved(descend(joint.at, start, (low, high), within.work.affordable(effort.tries, within.size), effort.enough))
     return best, joint.passed(best)
 
 
@@ -607,6 +656,7 @@ class Joint:
     def at(self, point: Array) -> Squares | None:
         """Sum of squares; `None` for an unstable plant."""
         within, found = self.within, self.moved(point)
+        within.work.count(within.size)
         values, slopes = self._responses(found, within.frequencies)
         whole = closed_by(within.plants, values)
         if not _is_stable(whole):
@@ -630,13 +680,11 @@ class Joint:
     def passed(self, found: Found) -> float:
         """Largest relative violation."""
         within = self.within
-        if not _is_stable(coupled_sensitivities(within.plants, found, within.frequencies)):
+        whole = coupled_sensitivities(within.plants, found, within.frequencies)
+        if not _is_stable(whole):
             return np.inf
-        loops = one_loops(within, found)
-        return max(
-            *(loops[loop].excess(self.bounds[loop]) for loop in self.parts),
-            coupled_peak(within, found) / within.spec.sensitivity / _INSIDE - 1.0,
-        )
+        loops = one_loops(within, found, whole)
+        return max(*(loops[loop].excess(self.bounds[loop]) for loop in self.parts), _coupled_peak(within, whole) / _INSIDE - 1.0)
 
 
 def _by_all(whole: Array, slopes: Mapping[int, Array], loop: int, alike: tuple[int, ...]) -> Array:
@@ -659,9 +707,9 @@ def _is_stable(whole: Array) -> bool:
     return bool(np.all(np.abs(turned[:, -1] - turned[:, 0] + begun) < 3.0))
 
 
-def one_loops(within: Field, found: Found) -> list[OneLoop]:
+def one_loops(within: Field, found: Found, whole: Array | None = None) -> list[OneLoop]:
     """Evaluate each loop with the others closed: C g = 1/S_ii - 1, and S_ij/S_ii for disturbances of loop j, independent of C."""
-    whole = coupled_sensitivities(within.plants, found, within.frequencies)
+    whole = coupled_sensitivities(within.plants, found, within.frequencies) if whole is None else whole
     slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
     responses, slow_responses = found.responses(within.frequencies), found.responses(within.lines[1:])
     loops = []
@@ -750,8 +798,7 @@ def _highest_stable(within: Field, found: Found) -> Found | None:
     for scale in _SCALES[::-1]:
         moved = replace(found, points=tuple(_louder(point, np.log(scale)) for point in found.points))
         whole = coupled_sensitivities(within.plants, moved, within.frequencies)
-        limit = _LOOSE * within.spec.sensitivity
-        if np.max(np.abs(whole[0])) <= limit and _is_stable(whole) and coupled_peak(within, moved) <= limit:
+        if np.max(np.abs(whole[0])) <= _LOOSE * within.spec.sensitivity and _is_stable(whole) and _coupled_peak(within, whole) <= _LOOSE:
             return moved
     return None
 
@@ -796,11 +843,9 @@ def _determinant(given: Array) -> Array:
     return np.linalg.det(given)
 
 
-def coupled_peak(within: Field, found: Found) -> float:
-    """Highest singular value of S over all plants, relative to its limit, times the specified sensitivity."""
-    whole = coupled_sensitivities(within.plants, found, within.frequencies)
-    limits = np.array([each.limit for each in within.variants])
-    return float(np.max(np.linalg.norm(whole, 2, axis=(-2, -1)) / limits[:, None]) * within.spec.sensitivity)
+def _coupled_peak(within: Field, whole: Array) -> float:
+    """Highest singular value of S over all plants, relative to its limit."""
+    return max(highest_gain(each)[0] / one.limit for each, one in zip(whole, within.variants, strict=True))
 
 
 def excess(within: Field, found: Found) -> float:

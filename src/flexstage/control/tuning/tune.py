@@ -15,6 +15,7 @@ from flexstage.control.tuning.attempt import Attempt, BandwidthTrial
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.spec import Judgement, Tuning, TuningSpec, spec_findings
 from flexstage.control.tuning.view import View, view
+from flexstage.experiment.progress import report
 
 _SLOW = 0.1
 """Lowest bandwidth tried, relative to integral control with a gain of 1 at the highest resonance, which is stable by small gain."""
@@ -110,6 +111,7 @@ def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | No
     """
     places = trial_bandwidths(seen, spec.family.steps)
     for number, place in enumerate(places):
+        report(number / len(places), "tuning")
         trial = BandwidthTrial(seen, spec, place)
         found = trial.reach()
         if found is not None:

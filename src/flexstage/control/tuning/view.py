@@ -36,8 +36,8 @@ _STANDS_OUT = 2.0
 class View:
     """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
 
-    `responses` (v, f, k, n) from strokes to the loops' poses, sense P, at `frequencies` (f,) [Hz]. `modes` [Hz] and `ratios` belong to the
-    plant's modes.
+    `responses` (v, f, k, n) from strokes to the loops' poses, sense P, at `frequencies` (f,) [Hz], for the offsets within the spread, which
+    are the first. `modes` [Hz] and `ratios` belong to the plant's modes.
     """
 
     plant: Plant
@@ -94,7 +94,7 @@ class View:
 
 
 def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:
-    """Compute the view of a plant by its loops; `offsets` are mode shifts, the first 0.
+    """Compute the view of a plant by its loops; `offsets` are mode shifts, ascending in size; responses are up to the `spread`.
 
     A relative shift s of all modes is equivalent to a time scale: the plant with samples (1 + s) T apart, labelled T.
 
@@ -108,8 +108,9 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     if offsets is None:
         offsets = (0.0, -spread, spread) if spread else (0.0,)
     systems = tuple(pose_plant(plant, offset) for offset in offsets)
-    frequencies = _frequencies(plant, offsets)
-    responses = np.stack([loops.sense @ system.sweep(frequencies) for system in systems])
+    near = [offset for offset in offsets if abs(offset) <= spread]
+    frequencies = _frequencies(plant, tuple(near))
+    responses = np.stack([loops.sense @ system.sweep(frequencies) for system, _ in zip(systems, near, strict=False)])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
 
 

@@ -196,7 +196,7 @@ def _unknown_names(contents: Contents, arrays: Arrays) -> Iterator[Finding]:
             continue
         held = next((each for each in contents.objects if matches(each, [name])), None)
         if held is None:
-            yield Finding(f"{contents.where}: {meaning}={name}", "it has no array of this name", suggest_nearest(name, known))
+            yield Finding(f"{contents.where}: {meaning}={name}", "unknown array", suggest_nearest(name, known))
         else:
             yield _object_finding(contents, held)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, TIME, VOLTAGE
+from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FORCE, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, TIME, VOLTAGE
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.parts.amplifier import Amplifier
 
@@ -15,15 +15,27 @@ from flexstage.parts.amplifier import Amplifier
 class NoiseDrive(CheckedFields):
     """Independent Gaussian noise drive of the actuators.
 
-    `stroke` is the rms of the commanded free stroke [m], or `voltage` the rms of the command [V]; default: 1 % of each stack's full stroke.
-    The density is constant within `band` (low, high) [Hz], and decays to zero from `low` to `low`/2 and from `high` to 1.25 `high`
-    (default: 0 to 0.4 times the sampling rate). `actuators` names the driven and recorded ones (default: all).
+    `stroke` is the rms of the commanded free stroke [m], `voltage` the rms of the command [V], `current` [A] or `force` [N] the rms of a force
+    actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator. The density is
+    constant within `band` (low, high) [Hz], and decays to zero from `low` to `low`/2 and from `high` to 1.25 `high` (default: 0 to 0.4
+    times the sampling rate). `actuators` names the driven and recorded ones (default: all).
     """
 
     stroke: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
     voltage: Annotated[float, VOLTAGE, POSITIVE] | None = None
+    current: Annotated[float, CURRENT, POSITIVE] | None = None
+    force: Annotated[float, FORCE, POSITIVE] | None = None
     band: tuple[Annotated[float, FREQUENCY, NOT_NEGATIVE], Annotated[float, FREQUENCY, POSITIVE]] | None = None
     actuators: tuple[str, ...] | None = None
+
+    @property
+    def amounts(self) -> dict[InputQuantity, float]:
+        """The specified rms values by quantity.
+
+        >>> NoiseDrive(current=0.1).amounts
+        {<InputQuantity.CURRENT: 'current'>: 0.1}
+        """
+        return {quantity: value for quantity in InputQuantity if (value := getattr(self, quantity.value)) is not None}
 
 
 @dataclass(frozen=True)
@@ -51,8 +63,9 @@ class Sensing(CheckedFields):
 class RigSetup(CheckedFields):
     """Virtual test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; gauges are recorded `delay` [s] late.
 
-    A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear. The default rate is the lowest
-    power of two of at least ten times the highest platform mode. Equal set-ups of equal stages give bit-identical records.
+    A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear.
+    The default rate is the lowest power of two of at least ten times the highest platform mode. Equal set-ups of equal stages give
+    bit-identical records. Without `input_quantity`, each recorded input is the actuator's own: stroke, current or force.
 
     >>> RigSetup(seconds=10.0).filter.order
     8
@@ -66,5 +79,5 @@ class RigSetup(CheckedFields):
     filter: AntiAlias = field(default_factory=AntiAlias)
     sensing: Sensing = field(default_factory=Sensing)
     input_signal: InputSignal = InputSignal.MONITOR
-    input_quantity: InputQuantity = InputQuantity.STROKE
+    input_quantity: InputQuantity | None = None
     delay: Annotated[float, TIME, NOT_NEGATIVE] = 0.0

@@ -100,9 +100,9 @@ class ChargeSetup(AmplifierSetup):
         """Findings for a missing coupling, a missing or double corner, and the data of voltage amplifiers."""
         yield from super().faults
         if self.coupling is None:
-            advice = "Use for example coupling = 0.7: data-sheet strokes and capacitances, d^2 k / C, overestimate it"
+            advice = "Use e.g. coupling = 0.7: data-sheet strokes and capacitances, d^2 k / C, overestimate it"
             yield Finding("amplifier.coupling", "charge drive needs the electromechanical coupling of the stack", advice)
         if (self.corner is None) == (self.leakage is None):
             given = "are both given" if self.corner is not None else "are both missing"
-            advice = 'Specify one of them: every charge drive has leakage. Use for example corner = "0.1 Hz"'
+            advice = 'Specify one of them: every charge drive has leakage. Use e.g. corner = "0.1 Hz"'
             yield Finding("amplifier", f"its corner and its leakage {given}", advice)

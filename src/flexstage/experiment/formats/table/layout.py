@@ -109,9 +109,7 @@ def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int])
         line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
         wrong = "it holds what is no number here" if count == columns else f"it has {count} fields where {columns} are expected"
         what = f'{wrong}, numbers before and after it: "{line}"'
-        yield Finding(
-            f"{path}: line {at + 1}", what, f'Correct it; if line {rows[0] + 1} is not a row of numbers, start that line with "#"'
-        )
+        yield Finding(f"{path}:{at + 1}", what, f'Correct it; if line {rows[0] + 1} is not a row of numbers, start that line with "#"')
 
 
 def _is_row(line: str) -> bool:

@@ -109,7 +109,7 @@ def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Findi
                 f"{path}: {meaning}={name}", "only time and frequencies of a table can be assigned", "Select channels otherwise (only)"
             )
         elif not any(matches(each, [name]) for each in layout.names):
-            yield Finding(f"{path}: {meaning}={name}", "no column is called so", suggest_nearest(name, layout.names))
+            yield Finding(f"{path}: {meaning}={name}", "unknown column", suggest_nearest(name, layout.names))
 
 
 def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
@@ -127,7 +127,7 @@ def complete_rows(path: Path, layout: Layout, options: Options, announced: int |
     ends = _ends_with_newline(path)
     if announced is not None and whole.length > announced:
         what = f"it has {whole.length} lines of numbers, its header says {announced}"
-        raise refuse(f"{path}: line {layout.line + announced}", what, "Save one record a file")
+        raise refuse(f"{path}:{layout.line + announced}", what, "Save one record a file")
     cut = _cut_short(path, layout, whole.end)
     if cut is None and (announced is None or (whole.length == announced and (ends or not closed))):
         return whole
@@ -136,7 +136,7 @@ def complete_rows(path: Path, layout: Layout, options: Options, announced: int |
         return replace(whole, length=unsure)
     what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {whole.length} of {announced} samples"
     advice = f'Export it again, or accept "truncated" to use the {max(0, unsure)} samples before'
-    raise refuse(f"{path}: line {layout.line + whole.length - 1}", what, advice)
+    raise refuse(f"{path}:{layout.line + whole.length - 1}", what, advice)
 
 
 def _cut_short(path: Path, layout: Layout, end: int) -> str | None:

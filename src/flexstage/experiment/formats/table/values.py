@@ -97,12 +97,12 @@ class TableSamples:
     def _line(self, text: str, number: int) -> list[float]:
         """One line, field by field; raises `DesignError` with its number if invalid."""
         fields, expected = self.layout.fields(text), len(self.layout.names)
-        where = f"{self.path}: line {self.layout.line + number}"
+        where = f"{self.path}:{self.layout.line + number}"
         fields = fields[:-1] if len(fields) == expected + 1 and not fields[-1] else fields
         if len(fields) != expected:
             what = f'it has {len(fields)} of {expected} fields: "{text.strip()[:_LISTED]}"'
             raise refuse(where, what, "Correct the line, or remove it")
-        return [self._field(fields[column], f"{where}, {self.layout.names[column]}") for column in self.columns]
+        return [self._field(fields[column], f"{where}: {self.layout.names[column]}") for column in self.columns]
 
     def _field(self, text: str, where: str) -> float:
         plain = text.replace(",", ".") if self.layout.decimal == "," else text

@@ -72,7 +72,7 @@ def _missing_functions(path: Path, found: list[DataSet]) -> Iterable[Finding]:
 
 
 def _where(path: Path, found: DataSet) -> str:
-    return f"{path}: {_name(found)} (line {found.line})"
+    return f"{path}:{found.line}: {_name(found)}"
 
 
 def _nothing(path: Path, found: list[DataSet]) -> Finding:
@@ -239,7 +239,7 @@ def _table(path: Path, found: list[DataSet], options: Options) -> dict[tuple[str
             continue
         if pair in table:
             what = f"duplicate response of {output} to {input_} (first in line {table[pair].line})"
-            findings.append(Finding(f"{path}: line {each.line}", what, "Export each response once, with nodes and directions"))
+            findings.append(Finding(f"{path}:{each.line}", what, "Export each response once, with nodes and directions"))
         table[pair] = each
     if not table:
         names = ", ".join(f"{output} to {input_}" for output, input_ in dict.fromkeys(map(_pair, found)))

@@ -51,7 +51,7 @@ def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
             try:
                 found.append(_read(path, stream, line, start))
             except ValueError as error:
-                where = f"{path}: function {len(found) + len(findings) + 1} (line {line})"
+                where = f"{path}:{line}: function {len(found) + len(findings) + 1}"
                 findings.append(Finding(where, str(error), "Export the file again"))
                 _skip(stream)
     return found, findings
