@@ -204,8 +204,8 @@ def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
     >>> on_test(resolve(parallelogram(), LoopSetup()), identify(one_mode_record()))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: --record: B: no input channel of this name in the record. There are u; a loop needs all.
-    --record: S: no output channel of this name in the record. There are y; a loop needs all.
+    flexstage.base.finding.DesignError: --record: B: no input channel of this name in the record. Use u; a loop needs all.
+    --record: S: no output channel of this name in the record. Use y; a loop needs all.
     """
     if given.setup.damping is not None:
         raise refuse("damping", "the test's plant has no forces in the legs", "Record the stage with its inner loops closed")

@@ -84,7 +84,7 @@ def motion_explained_text(explained: Array) -> str:
     """Describe the share of the measured shapes explained by ideal stage motion.
 
     >>> motion_explained_text(np.array([0.999, 1.0]))
-    'The motion drawn explains 99.9 % or more of every measured shape.'
+    'The drawn motion explains 99.9 % or more of every measured shape.'
     """
     if float(np.min(explained)) > 1.0 - 1e-9:
         return "As many outputs as degrees of freedom: the drawn motion has no independent check."
