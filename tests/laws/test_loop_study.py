@@ -133,7 +133,7 @@ def test_a_trajectory_is_played_with_its_error_as_many_times_too_large_as_its_na
     found = loop_study(stage, LoopSetup(controller=CALM, gauges=GaugeSetup(resolution=0.0), trajectory=SineMotion(1.0, 1.0)))
     (motion,) = response_motions(found, stage_data(stage))
     assert motion.response is not None
-    factor = float(motion.label.rpartition("its error ")[2].removesuffix(" times"))
+    factor = float(motion.label.rpartition("error ")[2].removesuffix(" times"))
     wanted, error = (next(each for each in motion.response.curves if each.name == name) for name in ("x wanted", "error of x"))
     scales = {"m": 1.0, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}
     played = wanted.values * scales[wanted.unit] - factor * error.values * scales[error.unit]

@@ -254,7 +254,7 @@ def test_times_that_are_none_are_told(tmp_path: Path) -> None:
 def test_times_and_rate_that_disagree_are_told(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     scipy.io.savemat(path, {"time": np.arange(400) / RATE, "rate": 128.0, "samples": VALUES[:, 0]})
-    assert "its times say 100 Hz, the file also states 128 Hz" in refusal(path)
+    assert "contradictory rates: 100 Hz by its times, 128 Hz in the file" in refusal(path)
 
 
 def test_arrays_of_different_lengths_are_told(tmp_path: Path) -> None:
