@@ -165,7 +165,7 @@ def test_a_missing_solver(command: Command, monkeypatch: pytest.MonkeyPatch, wor
 
 
 def test_bad_wishes(command: Command) -> None:
-    assert "no relative error" in command("solid", "stage.toml", "--accuracy", "500 %").err
+    assert "must be between 1e-6 and 1" in command("solid", "stage.toml", "--accuracy", "500 %").err
     assert command("solid", "stage.toml", "--accuracy", "1 mm").code == 2
     assert command("solid", "stage.toml", "--order", "1").code == 2
     assert command("calibrate", "stage.toml", "-o", "stage.toml").code == 2
