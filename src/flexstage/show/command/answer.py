@@ -158,7 +158,7 @@ def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
     """Warnings about a description (`None`: a record only) and `more` about the result, and default values of this kind of result."""
     found = Caveats() if mechanism is None else caveats(mechanism)
-    for title, findings in (("Warnings", (*found.warnings, *more)), ("Taken by default", found.defaults_of(kind))):
+    for title, findings in (("Warnings", (*found.warnings, *more)), ("Default values", found.defaults_of(kind))):
         if findings:
             yield "\n".join([title, "", *(f"  {each}" for each in findings)])
 
