@@ -144,7 +144,7 @@ def test_copies_are_named_with_the_first() -> None:
     units = {**base.units, "horizontal": replace(unit, links={**unit.links, "back": back})}
     finding = only(replace(base, units=units))
     assert finding.where == "B1/back"
-    assert "10 um away from B1/base (alike: B2/back, B3/back)" in finding.what
+    assert "10 um away from B1/base (also B2/back, B3/back)" in finding.what
 
 
 def test_a_part_without_shape_is_named() -> None:
