@@ -134,7 +134,7 @@ def test_a_step_file_is_stated_so_that_the_design_holds_it(flexstage: Command, t
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("nowhere.step", "--material", "steel"), "no such file"),
+        (("nowhere.step", "--material", "steel"), "file not found"),
         (("stage.toml", "--material", "steel"), "no STEP file"),
         (("nowhere.step", "--material", "stele"), "steel"),
     ],

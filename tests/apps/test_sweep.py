@@ -104,12 +104,12 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
     [
         ('"-10 %"', '"10 %"', "its range is empty"),
         ("materials.aluminium.young", "materials.aluminum.young", "aluminium"),
-        ('"frequency.1"', '"frequncy.1"', 'there is no measure called "frequncy.1"'),
-        ('"frequency.1"', '"safety.B"', "there is no measure"),
+        ('"frequency.1"', '"frequncy.1"', 'unknown measure "frequncy.1"'),
+        ('"frequency.1"', '"safety.B"', "unknown measure"),
         ("latin hypercube", "latin", "latin hypercube"),
-        ("seed = 3", "sed = 3", "this key is not known here"),
+        ("seed = 3", "sed = 3", "unknown key"),
         ('"10 %"', '"80 GPa"', "one end is relative"),
-        ('case = "parallelogram"', 'design = "none.toml"', "there is no such file"),
+        ('case = "parallelogram"', 'design = "none.toml"', "file not found"),
         ("responses.f", "responses.young", 'responses.young: column "young" exists already, from variables.young'),
         ("young = {", "design = {", 'variables.design: column "design" exists already, from the number of a design'),
         ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or contains control characters"),
@@ -117,7 +117,7 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
         (
             "flexstage study 1",
             "flexstage 1",
-            'error: 1 finding study.toml: line 2: format: found "flexstage 1", a design file, where',
+            'error: study.toml:2: format: unknown format (got "flexstage 1", a design file, expected a study file)',
         ),
     ],
 )

@@ -67,14 +67,14 @@ def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexsta
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("hinges", "hinge", "The nearest name is hinges"),
-        ("units.rotation.z", "units.rotaton.z", "The nearest name is rotation"),
-        ("300 urad", "-1 urad", "Give a deviation above 0"),
+        ("hinges", "hinge", "Use hinges"),
+        ("units.rotation.z", "units.rotaton.z", "Use rotation"),
+        ("300 urad", "-1 urad", "must be greater than 0"),
         ("copies = 40", "copies = 1", "Give a whole number of 2 or more"),
-        ("seed = 2", 'sampling = "grid"', 'found "grid"'),
-        ("seed = 2", 'point = "edge"', 'there is no point "edge"'),
+        ("seed = 2", 'sampling = "grid"', 'unknown value (got "grid")'),
+        ("seed = 2", 'point = "edge"', 'unknown point "edge"'),
         ("seed = 2", 'yield = "101 %"', "which is not greater than 0.5 and less than 1"),
-        ("[scatter]", "[scater]", "scater: this key is not known here"),
+        ("[scatter]", "[scater]", "scater: unknown key"),
     ],
 )
 def test_bad_studies_are_told(study_file, tmp_path, flexstage, old, new, message):

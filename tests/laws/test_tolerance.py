@@ -300,7 +300,7 @@ def test_volts_of_a_stack_that_reaches_farther_move_the_stage_farther():
 def test_an_asymmetric_tolerance_shifts_the_mean(guide):
     """Between limits a and b the mean deviation is (a + b) / 2."""
     for text, spread in (("", 6.0 / 12.0**0.5), ('normal = "1 um", ', Distribution(Shape.NORMAL, 1.0, 3.0).deviation)):
-        study = guide(f'scatter.w = {{ address = "leaf.thickness", {text}limits = ["-1 um", "5 um"] }}', copies=512)
+        study = guide(f'scatter.w = {{ address = "leaf.thickness", {text}interval = ["-1 um", "5 um"] }}', copies=512)
         values = piece(study, 0, 512).variables[:, 0]
         assert values.min() >= -1e-6
         assert values.max() <= 5e-6
@@ -355,10 +355,10 @@ def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
 
 
 BAD = {
-    'w = { address = "hinge.thickness", normal = "1 um" }': 'there is no "hinge". The nearest name is hinges.',
-    'w = { address = "leaf.thicknes", normal = "1 um" }': "The nearest name is thickness",
-    'w = { address = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
-    'w = { address = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
+    'w = { address = "hinge.thickness", normal = "1 um" }': 'unknown name "hinge". Use hinges.',
+    'w = { address = "leaf.thicknes", normal = "1 um" }': "Use thickness",
+    'w = { address = "leaf.thickness", normal = "-1 um" }': "must be greater than 0",
+    'w = { address = "leaf.thickness", normal = "0 um" }': "must be greater than 0",
     'w = { address = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard",
     'w = { address = "leaf.thickness", normal = "1e308 m" }': "deviations reach inf mm (5 standard deviations)",
     'w = { address = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and must be greater than 0",
@@ -368,11 +368,11 @@ BAD = {
     'w = { address = "leaf.thickness", normal = "1 mrad" }': "mrad",
     'w = { address = "materials.steel.young", normal = "1 %", independent = true }': "is a single number",
     'w = { address = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "different quantities",
-    'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
+    'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "unknown key",
     'w = { address = "stacks.stroke", normal = "1 %" }': "the design has no such part",
-    'w = { address = "leaf.thickness", limits = ["5 um", "-1 um"] }': "the lower limit is not below the upper one",
-    'w = { address = "leaf.thickness", uniform = "5 um", limits = ["-1 um", "5 um"] }': "limits given twice",
-    'w = { address = "leaf.thickness", limits = ["-1 um", "5 %"] }': "one is relative (%), the other not",
+    'w = { address = "leaf.thickness", interval = ["5 um", "-1 um"] }': "the lower limit is not below the upper one",
+    'w = { address = "leaf.thickness", uniform = "5 um", interval = ["-1 um", "5 um"] }': "limits given twice",
+    'w = { address = "leaf.thickness", interval = ["-1 um", "5 %"] }': "one is relative (%), the other not",
     'w = { address = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
 }
 

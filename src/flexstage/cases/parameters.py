@@ -54,7 +54,7 @@ def parameter(stage: Mechanism, name: str, where: str = "") -> Parameter:
     """
     known = parameters(stage)
     if name not in known:
-        raise refuse(where or name, f'there is no parameter "{name}"', suggest_nearest(name, known))
+        raise refuse(where or name, f'unknown parameter "{name}"', suggest_nearest(name, known))
     return known[name]
 
 

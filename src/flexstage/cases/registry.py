@@ -74,7 +74,7 @@ def shipped_case(name: str) -> Case:
     'six axes: six flexure struts in three pairs'
     """
     if name not in CASES:
-        raise refuse(name, "there is no case of this name", suggest_nearest(name, CASES))
+        raise refuse(name, "unknown case", suggest_nearest(name, CASES))
     return CASES[name]
 
 

@@ -76,6 +76,8 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": analysis.workspace,
         **({} if analysis.force_workspace is None else {"force_workspace": analysis.force_workspace}),
+        **({} if analysis.drive_force is None else {"drive_force": analysis.drive_force}),
+        **({} if analysis.stress is None else {"stress": analysis.stress}),
         "buckling": analysis.buckling,
         **({} if analysis.ends is None else {"ends": analysis.ends}),
         "drift": analysis.drift,

@@ -53,7 +53,7 @@ def find_section(catalogue: Catalogue, name: str) -> Catalogue:
     ['Gauge']
     """
     if name not in (names := [section.name for section in catalogue.sections]):
-        raise refuse(name, "the catalogue has no such section", suggest_nearest(name, names))
+        raise refuse(name, "unknown section", suggest_nearest(name, names))
     return replace(catalogue, sections=tuple(section for section in catalogue.sections if section.name == name))
 
 

@@ -47,18 +47,18 @@ def _end(number: int, _frame: object) -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run a command line and return its exit code.
 
-    0 done, 1 requirement missed (`--strict`), 2 bad input, unwritable output or interrupted, 70 a fault, 128 + n ended by signal n.
+    0 done, 1 requirement missed (`--strict`), 2 bad input or unwritable output, 70 a fault, 128 + n ended by signal n.
     """
     return run_guarded(lambda: _run(list(arguments)))
 
 
 def _run(arguments: list[str]) -> None:
     try:
-        from flexstage.apps.cli.commands import MODELS, application  # the doctor also runs without typer
+        from flexstage.apps.cli.commands import run_application  # the doctor also runs without typer
     except ModuleNotFoundError as error:
         if arguments[:1] != ["doctor"] or (error.name or "").startswith("flexstage"):
             raise
         from flexstage.apps.installation import consult
 
         sys.exit(consult())
-    application()(arguments, prog_name="flexstage", obj=MODELS)
+    sys.exit(run_application(arguments))

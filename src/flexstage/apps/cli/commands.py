@@ -9,9 +9,11 @@ from typing import Annotated, Any, NamedTuple, cast
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+from typer.exceptions import TyperException
 from typer.main import get_command
 
-from flexstage.base.finding import Finding, require
+from flexstage.apps.cli.usage import usage_error
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.renamed import new_name
 from flexstage.show.command.models import Models
 
@@ -115,6 +117,8 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage loop stage.toml --floor VC-D --report loop.html"),
     Command("serve", _CONTROL, "Run a stage as a virtual controller that programs drive over TCP.", f"{_CONTROLLED}.serve:serve",
             "flexstage serve stage.toml"),
+    Command("design", _IMPROVE, "Design stages for a specification.", f"{_STUDIES}.design:design",
+            "flexstage design spec.toml -o answers"),
     Command("sweep", _IMPROVE, "Compute many designs; show what varies with what.", f"{_STUDIES}.sweep:sweep",
             "flexstage sweep study.toml -o results.h5 --report sweep.html"),
     Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_STUDIES}.optimise:optimise",
@@ -159,11 +163,14 @@ class GroupedCommands(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Name, command and the remaining arguments."""
+        if not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
+            listed = "Use 'flexstage --help' to list all commands"
+            raise refuse(args[0], "unknown command", suggest_nearest(args[0], self.commands, otherwise=listed))
         name, found, rest = super().resolve_command(ctx, args)
         command = cast("LazyCommand", found).load() if found else None
         known = {word for each in getattr(command, "params", ()) for word in (*each.opts, *each.secondary_opts)}
         require(
-            Finding(old, "this option is not known", f"It is called {new}" if new.startswith("--") else f"Write {name} {new.upper()}")
+            Finding(old, "unknown option", f"Use {new}" if new.startswith("--") else f"Use {name} {new.upper()}")
             for old in dict.fromkeys(word.partition("=")[0] for word in rest)
             if (new := new_name(old, known)) is not None
         )
@@ -195,9 +202,19 @@ def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
     return group
 
 
-def _tell_version(*, asked: bool) -> None:
-    if asked:
-        from flexstage.apps.commands.about import version  # at the call, as for all commands
+def run_application(arguments: list[str]) -> int:
+    """Run a command line, and return the exit code that it requests; a usage error has the form of all messages."""
+    group = application()
+    try:
+        code = group(arguments or ["--help"], prog_name="flexstage", obj=MODELS, standalone_mode=False)
+    except TyperException as error:
+        raise usage_error(error, arguments, {each.name: each.example for each in COMMANDS}) from None
+    return code if isinstance(code, int) else 0
+
+
+def _print_version(*, requested: bool) -> None:
+    if requested:
+        from flexstage.apps.commands.about import version  # when called, as the module of any command
 
         version()
         raise typer.Exit
@@ -206,7 +223,7 @@ def _tell_version(*, asked: bool) -> None:
 def _options(
     *,
     version: Annotated[
-        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version of flexstage and stop.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version of flexstage and stop.")
     ] = False,
 ) -> None:
     pass

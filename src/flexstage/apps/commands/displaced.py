@@ -94,7 +94,7 @@ def _first_path(mechanism: Mechanism) -> str:
 def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str, float]) -> Course:
     """A path of a design, with additional `loads`."""
     if name not in mechanism.paths:
-        raise refuse(f"--path {name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
+        raise refuse(f"--path {name}", "unknown path", suggest_nearest(name, mechanism.paths))
     found = course(mechanism, name)
     values = found.values if steps is None else np.linspace(found.values[0], found.values[-1], steps)
     return replace(found, values=values, loads=found.loads | loads)
@@ -115,7 +115,7 @@ def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
     if isinstance(own, StrokeActuator):
         return float(np.real(own.stroke))
     if quantity not in (LENGTH, ANGLE):
-        raise refuse("--to", f"it is not said where {drive} ends", f'Write for example --to "{quantity.example}"')
+        raise refuse("--to", f"it is not said where {drive} ends", f'Use e.g. --to "{quantity.example}"')
     return 1e-4 if quantity is LENGTH else 1e-3
 
 

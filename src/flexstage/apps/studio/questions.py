@@ -62,7 +62,7 @@ def card(text: str, file: str, to: int, name: str) -> Card:
     known = bench(text, file)
     links: Mapping[str, PlacedLink | PlacedSuperelement] = {**known.assembly.links, **known.assembly.superelements}
     if name not in links:
-        raise refuse(name, "there is no link of this name", suggest_nearest(name, links))
+        raise refuse(name, "unknown link", suggest_nearest(name, links))
     link, lines = links[name], line_numbers(text)
     attempt = Attempts()
     own = link if isinstance(link, PlacedLink) else None
@@ -147,7 +147,7 @@ def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
     names, gauges = known.model.actuators, tuple(known.assembly.gauges)
     strange = [name for name in inputs if name not in names]
     if strange:
-        raise refuse(strange[0], "there is no actuator of this name", suggest_nearest(strange[0], names))
+        raise refuse(strange[0], "unknown actuator", suggest_nearest(strange[0], names))
     values = np.array([inputs.get(name, 0.0) for name in names])
     twist = static_gain(known.model, _PLATFORM, names).values @ values
     readings = static_gain(known.model, gauges, names).values @ values if gauges else np.zeros(0)

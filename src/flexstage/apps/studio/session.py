@@ -16,7 +16,7 @@ from flexstage.apps.studio.design.palette import snippets
 from flexstage.apps.studio.engine import Outcome, failure, problem
 from flexstage.apps.studio.helper import Helper, Urgency, nobody
 from flexstage.apps.studio.jobs import Jobs
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, refuse, suggest_nearest
 
 _QUIET = 0.3
 """Duration up to which a computation is not announced [s]."""
@@ -191,7 +191,7 @@ class Session:
     async def _recall(self, request: say.Recall, page: int, _: Tell) -> None:
         texts = {"": self.stored.text, **self.history.pins}
         if request.name not in texts:
-            raise refuse(request.name, "no design is pinned under this name", f"There are {', '.join(self.history.pins) or 'none'}")
+            raise refuse(request.name, "no design is pinned under this name", suggest_nearest(request.name, self.history.pins))
         self._take(self.history.change(texts[request.name], page))
 
     async def _compare(self, request: say.Compare, *_: Any) -> say.Said:

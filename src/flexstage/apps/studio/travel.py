@@ -44,7 +44,7 @@ def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable
 
 def _stated(mechanism: Mechanism, name: str) -> Course:
     if name not in mechanism.paths:
-        raise refuse(f"paths.{name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
+        raise refuse(f"paths.{name}", "unknown path", suggest_nearest(name, mechanism.paths))
     return course(mechanism, name)
 
 

@@ -123,7 +123,7 @@ def _record(kind: Any, found: Any, where: str) -> Any:
 
 
 def _wrong(where: str, found: Any) -> Any:
-    raise refuse(where, f"found {_shown(found)} where something else is expected", _ADVICE)
+    raise refuse(where, f"must be something else (got {_shown(found)})", _ADVICE)
 
 
 def _shown(found: Any) -> str:

@@ -12,15 +12,17 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, get_origin, get_type_hints
 
+import typer
 from rich.console import Console
 
 from flexstage.analysis.caveats import Caveats, caveats
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, combine_warnings
 from flexstage.base.storage.document import Document, as_text
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.design import DesignOptions
+from flexstage.show.command.failure import MISSED
 from flexstage.show.command.options import Csv, Json, Report, Xlsx
 from flexstage.show.command.output import STDOUT, announce, make_folder, require_writable, save, write
 from flexstage.show.command.terminal import print_note, print_styled, print_warning
@@ -33,6 +35,8 @@ from flexstage.show.workbook import to_xlsx
 _UNFOLDED = 1000
 _LONGEST = 200
 _HANG = 2
+_MAPPING = "mapping: 0 strokes"
+"""Reason of results that need the mapping of strokes to motions."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,8 @@ class CommandResult:
     warnings: tuple[Finding, ...] = ()
     kind: str | None = None
     """The kind of the document, if it differs from the name of the command."""
+    failed: bool = False
+    """Whether the command ends with exit code 1: it ran, and the answer is no."""
 
 
 _OUTPUTS = {"json": Json, "csv": Csv, "xlsx": Xlsx, "report": Report}
@@ -89,6 +95,8 @@ def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], C
             found = called(**{name: ({**made, **given} | opened)[name] for name in own})
             if found is not None:
                 write_result(found.kind or function.__name__.replace("_", "-"), found, outputs, given["csv"])
+                if found.failed:
+                    raise typer.Exit(MISSED)
 
         vars(run)["__signature__"] = Signature(offered)
         run.__annotations__ = {each.name: each.annotation for each in offered}
@@ -129,10 +137,10 @@ def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], cs
             return
         announce(f"Wrote {json}")
     if STDOUT in map(str, outputs.values()):
-        for each in (*(() if found.mechanism is None else caveats(found.mechanism).warnings), *found.warnings):
+        for each in combine_warnings((*(() if found.mechanism is None else caveats(found.mechanism).warnings), *found.warnings)):
             print_warning(str(each))
         return
-    show((*list_caveats(kind, found.mechanism, found.warnings), *found.tables()))
+    show((*found.tables(), *list_caveats(kind, found.mechanism, found.warnings)))
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
@@ -158,16 +166,17 @@ def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
     """Warnings about a description (`None`: a record only) and `more` about the result, and default values of this kind of result."""
     found = Caveats() if mechanism is None else caveats(mechanism)
-    for title, findings in (("Warnings", (*found.warnings, *more)), ("Default values", found.defaults_of(kind))):
+    for title, findings in (("warning", combine_warnings((*found.warnings, *more))), ("default", found.defaults_of(kind))):
         if findings:
-            yield "\n".join([title, "", *(f"  {each}" for each in findings)])
+            yield "\n".join(f"{title}: {each}" for each in findings)
 
 
-def print_missing(missing: Mapping[str, str]) -> None:
-    """Print the results not computed and their reasons to stderr; a shared reason once."""
+def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
+    """Print the results not computed and their reasons to stderr, a line for each reason; `forced`: forces drive the stage."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
-        print_note(f"not given: {names}: {reason}")
+        text = reason.partition(". ")[0].rstrip(".")
+        print_note(f"not computed for force-driven stages: {names}" if forced and _MAPPING in text else f"not computed: {names} ({text})")
 
 
 def show(shown: Iterable[Table | str | None]) -> None:

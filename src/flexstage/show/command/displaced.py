@@ -161,7 +161,7 @@ def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> 
 
     def read(name: str, value: str, where: str) -> float:
         if name not in units:
-            raise refuse(f"{option} {name}", f'there is no load "{name}"', suggest_nearest(name, units))
+            raise refuse(f"{option} {name}", f'unknown load "{name}"', suggest_nearest(name, units))
         return parse(value, quantity_of_unit(units[name]), where=where)
 
     return read_pairs(texts, option, read)

@@ -16,11 +16,10 @@ from flexstage.base.storage.store import remove_temporary_leftovers
 from flexstage.show.command.output import pending_outputs
 from flexstage.show.command.terminal import print_note, print_warning, streams
 
-DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
+DONE, MISSED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 70, 130
 SIGNALLED = 128
 """Exit code of a command ended by a signal: this plus the number of the signal."""
 ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-_FRAMEWORKS_INTERRUPTED = 130
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -48,8 +47,8 @@ def _exit_code(action: Callable[[], object]) -> int:
         return _missing(error)
     except BrokenPipeError:
         return DONE  # `| head`
-    except KeyboardInterrupt:
-        return _interrupted()
+    except KeyboardInterrupt as interruption:
+        return _interrupted(interruption)
     except MemoryError as error:
         return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Request less at once, or free memory"))
     except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
@@ -59,8 +58,8 @@ def _exit_code(action: Callable[[], object]) -> int:
 
 def _code_of_exit(end: SystemExit) -> int:
     """The exit code of a command that left early."""
-    if end.code == _FRAMEWORKS_INTERRUPTED:  # of the command-line framework, for an interruption
-        return _interrupted()
+    if end.code == INTERRUPTED:  # of the command-line framework, for an interruption
+        return _interrupted(end.__context__)
     if isinstance(end.__context__, BrokenPipeError):  # and a failure for a closed pipe
         return DONE
     if end.code in {SIGNALLED + each for each in ENDINGS}:
@@ -78,16 +77,16 @@ def _run_and_flush(action: Callable[[], object]) -> None:
     sys.stdout.flush()
 
 
-def _interrupted() -> int:
-    print_note(f"Interrupted; nothing was written. {_KEPT}")
+def _interrupted(interruption: BaseException | None) -> int:
+    """The exit code; an interruption may name the best result so far."""
+    best = f"{interruption} " if isinstance(interruption, KeyboardInterrupt) and interruption.args else ""
+    print_note(f"Interrupted; nothing was written. {best}{_KEPT}")
     return INTERRUPTED
 
 
 def _bad_input(error: DesignError) -> int:
-    count = len(error.findings)
-    print_note(f"error: {count} finding{'s' * (count > 1)}")
     for finding in error.findings:
-        print_note(f"  {finding}")
+        print_note(f"error: {finding}")
     return BAD_INPUT
 
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeAlias, TypeVar
 
 import typer
 
+from flexstage.base.finding import list_choices
 from flexstage.models.theory import Model
 from flexstage.show.command.failure import BAD_INPUT
 from flexstage.show.command.output import check_folder
@@ -51,7 +52,7 @@ def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Cal
             if word in (each, each.value):  # the member: a default
                 return each
         advice = f" {otherwise[str(word)]}." if word in otherwise else ""
-        print_note(f'error: {option}: "{word}" is none of {", ".join(str(each.value) for each in kind)}.{advice}')
+        print_note(f"error: {option}: must be {list_choices([str(each.value) for each in kind])} (got {word}).{advice}")
         raise typer.Exit(BAD_INPUT)
 
     return read
@@ -64,7 +65,7 @@ MODEL = word_option(
     "--model",
     Model,
     "Model of the stage: rigid bodies, axial springs, or lumped 6x6 hinges.",
-    otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
+    otherwise={"solid": "For solids, use flexstage solid or flexstage verify"},
 )
 ModelName: TypeAlias = Annotated[Model, MODEL]
 
@@ -97,6 +98,15 @@ Xlsx: TypeAlias = Annotated[
 
 Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")]
 
+InputDensities: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--input-asd",
+        "INPUT=DENSITY",
+        'Amplitude spectral density of a white input or its rate, e.g. "ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
+    ),
+]
+
 GaugeNoise: TypeAlias = Annotated[
     str | None, text_option("--gauge-noise", "DENSITY", 'Noise density of the gauges, e.g. "0.1 nm/Hz^0.5". Default: that of the design.')
 ]
@@ -127,6 +137,8 @@ STEPS = typer.Option(
 )
 
 Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
+
+Full: TypeAlias = Annotated[bool, typer.Option("--full", help="All tables and notes, instead of the short form.")]
 
 FEA = typer.Option("--fea", help="Finite elements of the stage, computed unless they are in the cache.")
 

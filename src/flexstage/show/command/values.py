@@ -16,7 +16,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 _Value = TypeVar("_Value")
 _Name = TypeVar("_Name")
-_ASD_EXAMPLE = 'Write for example --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
+_ASD_EXAMPLE = 'Use e.g. --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
 
 
 class Values:
@@ -60,7 +60,7 @@ def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
     for text in texts:
         if (fit := first_that_parses(text, known)) is None:
             what = f'found "{text}", which is no frequency, resistance or current'
-            values.findings.append(Finding("--amplifier", what, 'Write for example "500 Hz", "50 ohm" or "0.2 A"'))
+            values.findings.append(Finding("--amplifier", what, 'Use e.g. "500 Hz", "50 ohm" or "0.2 A"'))
         else:
             found[fit[0]] = fit[1]
     return found
@@ -88,11 +88,25 @@ def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]
 
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
-            advice = f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
+            advice = f"Use e.g. z=150um; {suggest_nearest(name, COMPONENTS)}"
             raise refuse(where, "must be a motion and a value", advice)
         return abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=where))
 
     return read_pairs(texts, option, read)
+
+
+def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
+    """The frequencies [Hz] of `--band`; refused where they do not rise from above zero.
+
+    >>> band_limits(("10 Hz", "2 kHz"))
+    (10.0, 2000.0)
+    """
+    if band is None:
+        return None
+    low, high = (parse(text, FREQUENCY, where="--band") for text in band)
+    if not 0.0 < low < high:
+        raise refuse("--band", f"{band[0]} to {band[1]} is no band", "Give a low frequency above zero and a higher one")
+    return low, high
 
 
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:

@@ -41,7 +41,7 @@ def error_figure(budget: ErrorBudget) -> Any:
 
 def _errors(budget: ErrorBudget, rows: slice, unit: str) -> tuple[_Shares, list[str], str]:
     """Errors by axis, command and source, with the sum of each bar and the label of the axis."""
-    kinds = {"ideal": budget.ideal, "corrected": budget.corrected}
+    kinds = {"open loop": budget.ideal} if budget.forced else {"ideal": budget.ideal, "corrected": budget.corrected}
     values = {kind: np.nan_to_num(first_design(matrix.values, 2)[rows]) for kind, matrix in kinds.items()}
     form = display_unit_of(unit, float(max(each.sum(axis=1).max() for each in values.values())))
     shares = {

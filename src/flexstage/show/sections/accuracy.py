@@ -39,9 +39,9 @@ def error_section(analysis: Analysis) -> Section | None:
     budget = analysis.error_budget
     if budget is None:
         return None
-    ideal, corrected = error_budget_tables(budget)
     picture = Picture(
         to_svg(error_figure(budget), "errors", "Error budget by axis and source"),
-        "Largest errors by source, added up: with the ideal mapping commanded, and with lost motion corrected by command.",
+        "Largest errors by source, added up"
+        + ("." if budget.forced else ": with the ideal mapping commanded, and with lost motion corrected by command."),
     )
-    return section("Error budget", [picture, ideal, corrected])
+    return section("Error budget", [picture, *error_budget_tables(budget)])

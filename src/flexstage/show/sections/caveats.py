@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flexstage.analysis.caveats import caveats
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, combine_warnings
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.page import Section, section
 from flexstage.show.tables.caveats import warning_table
@@ -16,6 +16,6 @@ def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Sect
     True
     """
     found = caveats(mechanism)
-    warnings = (*found.warnings, *more)
+    warnings = combine_warnings((*found.warnings, *more))
     taken = "Default values"
     return section("Warnings" if warnings else taken, [warning_table(warnings), warning_table(found.defaults, taken)])

@@ -8,7 +8,7 @@ from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.page import Block, Picture, Prose, Section, fold, section
 from flexstage.show.table import result_table
-from flexstage.show.tables.force_workspace import force_workspace_tables
+from flexstage.show.tables.force_workspace import drive_force_tables, force_workspace_tables
 from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_tables, weakest_first
 
 
@@ -22,9 +22,9 @@ def workspace_section(analysis: Analysis) -> Section | None:
     """
     reach = analysis.workspace
     if reach is None:
-        return (
-            None if analysis.force_workspace is None else section("Force workspace", list(force_workspace_tables(analysis.force_workspace)))
-        )
+        forced = analysis.force_workspace
+        tables = [] if forced is None else [*force_workspace_tables(forced), *drive_force_tables(analysis.drive_force)]
+        return section("Force workspace", tables)
     figure = workspace_figure(reach)
     caption = "Reachable poses, projected on pairs of coordinates."
     picture = None if figure is None else Picture(to_svg(figure, "reach", caption), caption)
@@ -49,12 +49,9 @@ def strength_section(analysis: Analysis) -> Section | None:
     """
     reach = analysis.workspace
     if reach is not None:
-        return section("Forces, strength and clearance", _strength(reach))
-    return (
-        None
-        if analysis.buckling is None
-        else section("Buckling", [result_table(analysis.buckling.stage), weakest_first(analysis.buckling)])
-    )
+        return section("Forces, strength and clearance", [weakest_first(analysis.stress), *_strength(reach)])
+    buckled = [] if analysis.buckling is None else [result_table(analysis.buckling.stage), weakest_first(analysis.buckling)]
+    return section("Strength", [weakest_first(analysis.stress), *buckled])
 
 
 def _strength(reach: Workspace) -> list[Block | None]:

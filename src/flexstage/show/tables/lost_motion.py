@@ -71,7 +71,7 @@ def budget_table(lost: LostMotion) -> Table | None:
         return None
     budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
     notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones increase the gain."]
-    return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], _share_rows(budgets, "loss"), notes=notes)
+    return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], share_rows(budgets, "loss"), notes=notes)
 
 
 _OWN_AND_OTHERS = "Links without a unit's name are those of the actuator's own unit, those with one another unit's"
@@ -106,7 +106,7 @@ def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str],
     return result
 
 
-def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
+def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
     """Rows by link, largest first, columns by actuator, negligible links summed and counted, the sum last."""
     parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
     size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
@@ -213,7 +213,7 @@ def energy_table(lost: LostMotion) -> Table:
     """
     energies = energy_shares(lost)
     totals = first_design(lost.energy.values, 2).sum(axis=0)
-    rows = _share_rows(energies, "all")
+    rows = share_rows(energies, "all")
     whole = [Cell("energy [uJ/um^2]", Mark.STRONG), *(Cell(number(1e-6 * float(total), 4)) for total in totals)]
     heads = ["part", *(Column(name) for name in lost.energy.columns)]
     return make_table("Strain energy by part", heads, [*rows, tuple(whole)], notes=[f"{_OWN_AND_OTHERS}."])

@@ -12,7 +12,12 @@ from flexstage.analysis.assessment.measures import MeasureKind
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.workspace.strength import HingeStress
+from flexstage.base.labelled import NOISE
 from flexstage.base.number import first_design
+from flexstage.models.batch.choice import platform_rows
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.undetermined import floats
 from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
@@ -24,7 +29,7 @@ _DIGITS = 4
 _ROWS = 8
 _LOSS = 3
 """Columns of the table of lost motion up to the loss."""
-_NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them under [requirements] in the design file."
+_NO_REQUIREMENTS = "no requirements. Add a table [requirements] to the design file."
 
 
 def stage_text(analysis: Analysis) -> str:
@@ -52,6 +57,24 @@ def load_line(analysis: Analysis) -> str | None:
     True
     """
     return None if analysis.loaded is None else analysis.loaded.text or None
+
+
+def floating_line(model: LinearModel | None) -> str | None:
+    """Motions of the platform without stiffness, and the actuators that drive them; `None` of a stage without any.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> floating_line(lumped(double_triangle())) is None
+    True
+    """
+    if model is None or model.floating is None:
+        return None
+    twist = np.abs(platform_rows(model) @ model.floating).T
+    axes = [name for name, moved in zip(COMPONENTS, np.any(twist > NOISE * np.max(twist), axis=0), strict=True) if moved]
+    driving = [name for name, drives in zip(model.actuators, floats(model, model.actuators), strict=True) if drives]
+    modes = "a mode" if len(twist) == 1 else f"{len(twist)} modes"
+    where = f"No stiffness along {', '.join(axes)}, driven by {', '.join(driving)}"
+    return f"{where}: {modes} at 0 Hz; static stiffness and strokes at force are undefined there."
 
 
 def small_line(analysis: Analysis) -> str | None:
@@ -88,14 +111,15 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
     >>> [each.title for each in summary_tables(analyse(double_triangle(), Model.IDEAL), explained=True) if isinstance(each, Table)]
     ['Platform']
     """
-    yield load_line(analysis)
-    yield small_line(analysis)
+    yield floating_line(analysis.linear)
     axes = axis_table(analysis)
     yield axes if explained or axes is None else replace(axes, notes=())
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.modes is None else lowest_mode(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield _strength_text(analysis)
+    yield load_line(analysis)
+    yield small_line(analysis)
 
 
 def axis_table(analysis: Analysis) -> Table | None:
@@ -104,11 +128,11 @@ def axis_table(analysis: Analysis) -> Table | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> axis_table(analyse(double_triangle(), Model.MAPPED)).texts()[3]
-    ['z', '300 um', 'B4', '10.09 N/um', '10 nm']
+    ['z', '+-300 um', 'B4', '10.09 N/um', '10 nm']
     """
     strokes, stiffness, resolution = _strokes(analysis), _stiffness(analysis), _resolution(analysis)
     columns = {
-        "stroke, both ways": {name: text for name, (text, _) in strokes.items()},
+        "stroke": {name: text for name, (text, _) in strokes.items()},
         "limited by": {name: cause for name, (_, cause) in strokes.items()},
         "stiffness": stiffness,
         "resolution": resolution,
@@ -150,7 +174,7 @@ def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     else:
         return {}
     return {
-        name: (NO_VALUE if np.isnan(value) else _shown(value, name, TWIST_UNITS), cause or "no limit stated")
+        name: (NO_VALUE if np.isnan(value) else f"+-{_shown(value, name, TWIST_UNITS)}", cause or "no limit stated")
         for name, value, cause in zip(names, np.real(values), causes, strict=True)
     }
 
@@ -215,12 +239,17 @@ def _first_rows(table: Table) -> Table:
 def _strength_text(analysis: Analysis) -> str | None:
     reach = analysis.workspace
     buckling = analysis.buckling if reach is None else reach.buckling
-    said: list[str] = []
-    if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {number(single(reach.stress.min_safety), 4)} against yield, in {reach.stress.weakest}")
+    strengths = (analysis.stress, None if reach is None else reach.stress)
+    said = [_weakest_text(each) for each in strengths if each is not None and each.links]
     if buckling is not None:
-        said.append(f"load factor of buckling {number(single(buckling.min_factor), 4)}")
-    return f"Strength: {', '.join(said)}." if said else None
+        said.append(f"Buckling load factor: {number(single(buckling.min_factor), 4)}.")
+    return "\n".join(said) or None
+
+
+def _weakest_text(found: HingeStress) -> str:
+    """The least safety factor at the worst corner of some strokes, the hinge and the place in it."""
+    place = f", {found.places[found.links.index(found.weakest)]}" if found.places else ""
+    return f"Least safety factor at the worst corner {found.condition}: {number(single(found.min_safety), 4)}, in {found.weakest}{place}."
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
@@ -237,7 +266,7 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
         "" if whole else "\n  All tables: --full. With pictures, in one page: --report FILE."
     )
     if not analysis.verdicts:
-        return f"Verdict: {_NOTHING_ASKED}{more}"
+        return f"Verdict: {_NO_REQUIREMENTS}{more}"
     worst = min(analysis.verdicts, key=_rank)
     asked = worst.requirement
     why = worst.reason.rstrip(".") or _cause(analysis, worst)
@@ -284,7 +313,13 @@ def _loss_cause(analysis: Analysis, name: str) -> str:
 
 def _safety_cause(analysis: Analysis, _: str) -> str:
     stress = None if analysis.workspace is None else analysis.workspace.stress
+    if stress is None and analysis.kinematics.thrusts:
+        return "all coils at peak current; safety.at_strokes is at the required strokes"
     return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
+
+
+def _cause_at_strokes(analysis: Analysis, _: str) -> str:
+    return "" if analysis.stress is None else f"the hinge {analysis.stress.weakest}"
 
 
 _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
@@ -294,4 +329,5 @@ _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
     measures.loss: _loss_cause,
     measures.own_loss: _loss_cause,
     measures.safety: _safety_cause,
+    measures.safety_at_strokes: _cause_at_strokes,
 }

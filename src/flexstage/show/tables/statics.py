@@ -96,7 +96,8 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
     degrees = np.arange(0, 180, _STEP)
     free, held = (_along(item, np.deg2rad(degrees)) for item in (statics.free, statics.held))
     heads = (f"displacement at {number(load)} N", "stiffness, others free", "stiffness, others fixed")
-    values = np.stack([load / free, free, held], axis=-1)
+    with np.errstate(divide="ignore"):
+        values = np.stack([load / free, free, held], axis=-1)
     found = Matrix(values, tuple(map(str, degrees)), heads, (("m", "N/m", "N/m"),) * len(degrees))
     return column_table("Stiffness by direction in the plane", found, head="direction [deg]", notes=["From x towards y."])
 

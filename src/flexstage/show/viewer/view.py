@@ -66,7 +66,7 @@ def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
     data = stage_data(mechanism)
     names = [f"{each.group.value} {each.name}" for each in data.motions]
     if motion not in (_FIRST, *names):
-        raise refuse(motion, "the stage has no motion of this name", suggest_nearest(motion, names))
+        raise refuse(motion, "unknown motion", suggest_nearest(motion, names))
     return view_of(mechanism, data, motion)
 
 

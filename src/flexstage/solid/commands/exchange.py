@@ -45,7 +45,7 @@ def cad(
     Outlines are checked against each other first: what does not meet, overlaps or nearly coincides is told, and keeps it from being meshed.
     """
     if output is None and mesh is None and gltf is None:
-        raise typer.BadParameter("name a file to write, e.g. -o stage.step, --mesh stage.vtu or --gltf stage.glb", param_hint="--output")
+        raise refuse("--output", "missing", "Use -o stage.step, --mesh stage.vtu or --gltf stage.glb")
     mechanism = open_design(design, changes, [("--output", output), ("--mesh", mesh), ("--gltf", gltf)])
     for path, option, content in _contents(mechanism, {"--output": output, "--mesh": mesh, "--gltf": gltf}, order, modes):
         save(path, content, option)

@@ -66,7 +66,7 @@ def _component(parts: tuple[Component, ...], name: str) -> Component:
     """The component that contains a body or link."""
     held = {piece.owner: part for part in parts for piece in part.pieces}
     if name not in held:
-        raise refuse(name, "no solid of the stage has this name", suggest_nearest(name, held))
+        raise refuse(name, "unknown solid", suggest_nearest(name, held))
     return held[name]
 
 

@@ -116,15 +116,15 @@ def stiffness_figures(found: Statics) -> dict[str, float]:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> round(stiffness_figures(statics(mapped(double_triangle())))["stiffest in plane, others held"] / 1e6, 2)  # N/um
+    >>> round(stiffness_figures(statics(mapped(double_triangle())))["in-plane stiffness (stiffest), others fixed"] / 1e6, 2)  # N/um
     15.45
     """
     held, free = found.held.principal, found.free.principal
     return {
-        "stiffest in plane, others held": float(held[0]),
-        "softest in plane, others held": float(held[1]),
-        "stiffest in plane, others free": float(free[0]),
-        "softest in plane, others free": float(free[1]),
+        "in-plane stiffness (stiffest), others fixed": float(held[0]),
+        "in-plane stiffness (softest), others fixed": float(held[1]),
+        "in-plane stiffness (stiffest), others free": float(free[0]),
+        "in-plane stiffness (softest), others free": float(free[1]),
         **{f"stiffness {COMPONENTS[index]}": float(found.stiffness.values[index, index]) for index in (2, 3, 4, 5)},
     }
 

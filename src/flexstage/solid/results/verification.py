@@ -149,11 +149,11 @@ class Verification(InNotebook):
 
     @property
     def headline(self) -> str:
-        """Number of sufficiently accurate figures of the widest compared group, and differences between theory and finite elements."""
+        """Largest differences between theory and finite elements in the widest compared group, and the number of agreeing figures."""
         name, rows = list(self.groups.items())[-1]
         good = sum(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows)
         words = departures(rows)
-        return f"{name.capitalize()}: theory will do for {good} of {len(rows)} figures{f'; {words}' if words else ''}."
+        return f"{words[:1].upper()}{words[1:]}{'. ' if words else ''}Theory suffices for {good} of {len(rows)} figures of the {name}."
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
@@ -429,9 +429,9 @@ def _reasons(rows: Iterable[Row]) -> str:
 def departures(rows: Iterable[Row]) -> str:
     """Differences between theory and finite elements as text: the worst figure of every kind, and its cause.
 
-    >>> row = Row("stage", "softest in plane, others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
+    >>> row = Row("stage", "in-plane stiffness (softest), others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
     >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])
-    'softest in plane, others free: theory 4.5 times too stiff (rigid bodies bend)'
+    'in-plane stiffness (softest), others free: theory 4.5 times too stiff (rigid bodies bend)'
     """
     worst: dict[str, Row] = {}
     for row in rows:

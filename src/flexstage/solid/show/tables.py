@@ -121,7 +121,7 @@ def verification_table(rows: tuple[Row, ...]) -> Table | None:
     >>> from flexstage.solid.results.verification import Row
     >>> table = verification_table((Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001),))
     >>> [] if table is None else table.texts()[1]
-    ['mode 1', '101', '100', '0.1 %', '1 %', 'theory will do']
+    ['mode 1', '101', '100', '0.1 %', '1 %', 'theory suffices']
     """
     return result_table(rows, notes=[f"{row.figure}: {row.reason}." for row in rows if row.reason])
 

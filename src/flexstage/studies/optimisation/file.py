@@ -33,7 +33,7 @@ def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> 
         for name in names or ():
             at = f"optimise.{aim.value}"
             if name not in study.responses:
-                findings.append(Finding(at, f'there is no response "{name}"', suggest_nearest(name, study.responses)))
+                findings.append(Finding(at, f'unknown response "{name}"', suggest_nearest(name, study.responses)))
             elif name in (each.name for each in found):
                 findings.append(Finding(at, f'"{name}" is an objective already', "Name it once"))
             elif (same := next((each for each in found if each.measure == study.responses[name]), None)) is not None:
@@ -42,7 +42,7 @@ def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> 
                 found.append(Objective(name, study.responses[name], aim))
     if not found and not findings:
         example = next(iter(study.responses), "f1")
-        findings.append(Finding("optimise", "no objective is named", f'Write for example maximise = "{example}" in [optimise]'))
+        findings.append(Finding("optimise", "no objective is named", f'Use e.g. maximise = "{example}" in [optimise]'))
     if len(found) > _MOST:
         what = f"must be at most {_MOST} objectives (got {len(found)})"
         findings.append(Finding("optimise", what, "Keep two, and set [limits] on the others"))

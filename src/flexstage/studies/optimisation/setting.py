@@ -87,7 +87,7 @@ def setting(study: Study, definition: OptimisationProblem) -> Setting:
     shares = np.array([share_of(each, each.nominal(study.design)) for each in study.variables])
     before = values(np.clip(shares, 0.0, 1.0)[None])[0]
     if isinstance(before, str):
-        require([Finding("design", before, "Mend it before it is optimised")])
+        require([Finding("design", before, "Correct it before it is optimised")])
     assert isinstance(before, Point)  # noqa: S101  refused above
     return Setting(study, definition, kept, values, before)
 

@@ -38,7 +38,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     >>> load_study("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
     """
     return loads_study(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
@@ -101,7 +101,7 @@ def read_opening(text: str, where: str, folder: Path | None) -> Opening:
 def _variables(tables: Mapping[str, VariedTable], head: Opening) -> tuple[Variable, ...]:
     """All variables; without an address, the name of a variable is its address."""
     if not tables:
-        what = 'Write for example neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
+        what = 'Use e.g. neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
         head.findings.append(Finding("variables", "nothing is varied", what))
     found = []
     for name, table in tables.items():
@@ -148,7 +148,7 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
     if is_share(table.low):
         findings.append(Finding(f"{where}.step", "the range is relative (%)", "Give the range with a unit, or leave out the step"))
     elif not step > 0.0:
-        findings.append(Finding(f"{where}.step", f"found {step:g}", 'Give a step above 0, for example step = "10 um"'))
+        findings.append(Finding(f"{where}.step", f"must be greater than 0 (got {step:g})", 'Use e.g. step = "10 um"'))
     return step
 
 

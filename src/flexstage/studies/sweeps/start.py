@@ -50,7 +50,7 @@ def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
         try:
             known = parameter(case(name), key, f"parameters.{key}")
             if known.quantity.si != "1" and not isinstance(value, str):
-                findings.append(Finding(f"parameters.{key}", f"found {value!r} without a unit", f'Write for example "{known.text}"'))
+                findings.append(Finding(f"parameters.{key}", f"unit missing (got {value!r})", f'Use e.g. "{known.text}"'))
             else:
                 found[key] = value
         except DesignError as error:

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.measures import Measure, crosstalk
 from flexstage.analysis.bench import Bench
-from flexstage.base.finding import refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import Quantity
 from flexstage.mechanism.mechanism import PLATFORM
@@ -58,7 +58,7 @@ def command(bench: Bench, point: str) -> Command:
     (6, 6)
     """
     if point != PLATFORM and point not in bench.assembly.points:
-        raise refuse("tolerance.point", f'there is no point "{point}"', f"There are {', '.join((PLATFORM, *bench.assembly.points))}")
+        raise refuse("tolerance.point", f'unknown point "{point}"', suggest_nearest(point, (PLATFORM, *bench.assembly.points)))
     gains = bench.correction(point)
     reference = bench.assembly.bodies[PLATFORM].reference + bench.arm(point)
     return Command(

@@ -43,7 +43,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
     """
     return loads_tolerance(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
@@ -66,9 +66,7 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     bench = _Reached(design)
     scatters = _scatters(file.scatter, bench, findings)
     if not file.scatter:
-        findings.append(
-            Finding("scatter", "nothing scatters", 'Write for example wire = { address = "hinges.thickness", normal = "5 um" }')
-        )
+        findings.append(Finding("scatter", "nothing scatters", 'Use e.g. wire = { address = "hinges.thickness", normal = "5 um" }'))
     if file.tolerance.copies > _MOST:
         findings.append(Finding("tolerance.copies", f"must be at most {_MOST:.0e} (got {file.tolerance.copies:.3g})", "Use fewer samples"))
     asked = _command(file.tolerance, design, findings)
@@ -180,21 +178,21 @@ def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings:
 def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
     """The specified distribution."""
     given = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
-    if len(given) != 1 and (given or table.limits is None):
+    if len(given) != 1 and (given or table.interval is None):
         what = "must be normal or uniform, not both" if given else "deviation missing"
-        advice = 'Use normal = "2 um", a standard deviation, uniform = "5 um", a half width, or limits = ["-1 um", "5 um"]'
+        advice = 'Use normal = "2 um", a standard deviation, uniform = "5 um", a half width, or interval = ["-1 um", "5 um"]'
         findings.append(Finding(f"{where}.normal", what, advice))
     if table.within is not None and given == [Shape.UNIFORM]:
         findings.append(Finding(f"{where}.within", "a uniform distribution is bounded", "Leave it out"))
-    if table.limits is not None and (table.uniform is not None or table.within is not None):
-        findings.append(Finding(f"{where}.limits", "limits given twice", "Leave out uniform or within"))
-    return given[0] if given else Shape.UNIFORM if table.limits else Shape.NORMAL
+    if table.interval is not None and (table.uniform is not None or table.within is not None):
+        findings.append(Finding(f"{where}.interval", "limits given twice", "Leave out uniform or within"))
+    return given[0] if given else Shape.UNIFORM if table.interval else Shape.NORMAL
 
 
 def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quantity) -> tuple[Distribution, bool]:
     """The distribution, and whether its numbers are shares of the design's value."""
-    low, high = table.limits or (None, None)
-    raw = {"normal": table.normal, "uniform": table.uniform, "within": table.within, "limits.0": low, "limits.1": high}
+    low, high = table.interval or (None, None)
+    raw = {"normal": table.normal, "uniform": table.uniform, "within": table.within, "interval.0": low, "interval.1": high}
     given = {key: text for key, text in raw.items() if text is not None}
     if len({is_share(text) for text in given.values()}) > 1:
         raise refuse(f"{where}.within", "one is relative (%), the other not", "Use % for both or neither")
@@ -204,17 +202,19 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         wanted = RATIO if is_share(text) else quantity
         try:
             sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
-            if not sizes[key] > 0.0 and key not in ("limits.0", "limits.1"):
-                findings.append(Finding(f"{where}.{key}", f"found {show(sizes[key], wanted)}", "Give a deviation above 0"))
+            if not sizes[key] > 0.0 and key not in ("interval.0", "interval.1"):
+                findings.append(
+                    Finding(f"{where}.{key}", f"must be greater than 0 (got {show(sizes[key], wanted)})", "Use a positive deviation")
+                )
         except DesignError as error:
             findings += error.findings
     require(findings)
     relative = is_share(next(iter(given.values())))
-    if table.limits is None:
+    if table.interval is None:
         return Distribution(shape, sizes[shape.value], sizes.get("within")), relative
-    low, high = sizes["limits.0"], sizes["limits.1"]
+    low, high = sizes["interval.0"], sizes["interval.1"]
     if not low < high:
-        raise refuse(f"{where}.limits", "the lower limit is not below the upper one", 'Write for example limits = ["-1 um", "5 um"]')
+        raise refuse(f"{where}.interval", "the lower limit is not below the upper one", 'Use e.g. interval = ["-1 um", "5 um"]')
     half, middle = 0.5 * (high - low), 0.5 * (high + low)
     return Distribution(shape, sizes.get("normal", half), half if shape is Shape.NORMAL else None, middle), relative
 

@@ -82,7 +82,7 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
         known = (*KINDS, *PLACED)
         missed = any(f'"{owner}"' in each.what for each in error.findings)
         if missed and "/" not in source and "." in source and (near := suggest_nearest(owner, known)).startswith("The nearest"):
-            raise refuse(source, f'there is no "{owner}"', near) from error
+            raise refuse(source, f'unknown name "{owner}"', near) from error
         raise
     return (source,)
 

@@ -27,11 +27,9 @@ def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
     """
     known = {each.name: each for each in snippets()}
     if snippet not in known:
-        raise refuse(snippet, "the palette has no such snippet", suggest_nearest(snippet, known))
+        raise refuse(snippet, "unknown snippet", suggest_nearest(snippet, known))
     wanted = known[snippet]
-    require(
-        Finding(f"{snippet}.{name}", "it has no such field", suggest_nearest(name, wanted.fields)) for name in fields.keys() - wanted.fields
-    )
+    require(Finding(f"{snippet}.{name}", "unknown field", suggest_nearest(name, wanted.fields)) for name in fields.keys() - wanted.fields)
     filled = _fill(wanted.text, {**wanted.fields, **fields})
     _require_free(text, filled, snippet)
     result = text if text.endswith("\n") or not text else f"{text}\n"

@@ -63,7 +63,7 @@ def measure(path: Path, name: str | None = None) -> ImportedProperties:
 
     >>> measure(Path("nowhere.step"))
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: nowhere.step: there is no such file. Check the path.
+    flexstage.base.finding.DesignError: nowhere.step: file not found. Check the path.
     """
     digest = _sha256(path)
     solid = _solid(path, name)

@@ -147,7 +147,7 @@ def _pieces(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, worke
         start, stop = failed.arguments
         what, advice = ("processes crashed repeatedly", "Free memory and resume")
         if isinstance(failed.error, DesignError):
-            what, advice = " ".join(str(failed.error).split()), "Mend it and resume"
+            what, advice = " ".join(str(failed.error).split()), "Correct it and resume"
         elif failed.error is not None:
             raise failed.error from None
         raise refuse(f"designs {start} to {stop - 1}", what, advice) from None

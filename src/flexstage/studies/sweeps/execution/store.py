@@ -82,7 +82,7 @@ class Results:
         for names, values in zip(self.names, (self.variables, self.responses), strict=True):
             if name in names:
                 return values[:, names.index(name)]
-        raise refuse(name, "the results have no column of this name", f"They have {', '.join(sum(self.names, ()))}")
+        raise refuse(name, "unknown column", f"They have {', '.join(sum(self.names, ()))}")
 
     def to_xarray(self) -> Any:
         """The results as an xarray dataset over the design number, units in the attributes (extra `tables`)."""
@@ -220,12 +220,12 @@ def read_results(path: str | os.PathLike[str]) -> Results:
     >>> read_results("nowhere/results.h5")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/results.h5: there is no such file. Check the path.
+    flexstage.base.finding.DesignError: nowhere/results.h5: file not found. Check the path.
     """
     where = os.fspath(path)
     target = Path(where.rstrip("/").removesuffix(_PIECES))
     if not target.exists():
-        raise refuse(where, "there is no such file", "Check the path")
+        raise refuse(where, "file not found", "Check the path")
     for _ in range(_ATTEMPTS):  # a piece combined meanwhile is in the file at the next attempt
         pieces = list(pending_pieces(target).values())
         try:
