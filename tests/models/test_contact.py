@@ -75,7 +75,7 @@ def test_a_link_drawn_backwards_is_told_to_turn() -> None:
     link = replace(base.links["leaf"], joins=("platform", "arm"))
     finding = only(replace(base, links={"leaf": link}))
     assert "drawn from arm to platform" in finding.what
-    assert "Turn `along` round" in finding.advice
+    assert "Reverse `along`" in finding.advice
     turned = replace(base, links={"leaf": replace(link, along=(-1.0, 0.0, 0.0))})
     assert contact_findings(turned) == ()
 
