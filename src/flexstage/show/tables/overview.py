@@ -83,7 +83,7 @@ def small_line(analysis: Analysis) -> str | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> small_line(analyse(double_triangle(), Model.MAPPED)).partition(" (")[0]
-    'Over the strokes linear kinematics is off by up to 0.0016 %'
+    'Over the strokes the error of linear kinematics is up to 0.0016 %'
     """
     return None if analysis.second_order is None else analysis.second_order.text
 
