@@ -221,7 +221,7 @@ def test_an_interruption_ends_with_the_code_of_its_signal_and_the_same_command_r
 @pytest.mark.parametrize(
     ("memory", "said"),
     [
-        ("8", '--memory: unit missing (got "8"). Use e.g. "8 GB".'),
+        ("8", '--memory: unit missing (got "8"). Use a size of memory, e.g. "8 GB".'),
         ("0 GB", "--memory: must be a size of memory (got 0 GB)."),
         ("-1 GB", "--memory: must be a size of memory (got -1 GB)."),
         ("8 mm", '--memory: must be a size of memory (got "8 mm", a length).'),
