@@ -326,7 +326,7 @@ def test_the_doctor_prints_rows_and_tells_by_exit_code(flexstage: Command, monke
     monkeypatch.setattr(doctor, "examine", lambda *_: rows)
     sick = flexstage("doctor")
     assert sick.code == 2
-    assert "1 thing to mend" in sick.out
+    assert "1 problem found" in sick.out
     assert "make it" in sick.out
     rows.pop()
     sound = flexstage("doctor")

@@ -165,7 +165,7 @@ def test_a_missing_solver(command: Command, monkeypatch: pytest.MonkeyPatch, wor
 
 
 def test_bad_wishes(command: Command) -> None:
-    assert "no relative error" in command("solid", "stage.toml", "--accuracy", "500 %").err
+    assert "must be between 1e-6 and 1" in command("solid", "stage.toml", "--accuracy", "500 %").err
     assert command("solid", "stage.toml", "--accuracy", "1 mm").code == 2
     assert command("solid", "stage.toml", "--order", "1").code == 2
     assert command("calibrate", "stage.toml", "-o", "stage.toml").code == 2
@@ -221,7 +221,7 @@ def test_an_interruption_ends_with_the_code_of_its_signal_and_the_same_command_r
 @pytest.mark.parametrize(
     ("memory", "said"),
     [
-        ("8", '--memory: unit missing (got "8"). Use e.g. "8 GB".'),
+        ("8", '--memory: unit missing (got "8"). Use a size of memory, e.g. "8 GB".'),
         ("0 GB", "--memory: must be a size of memory (got 0 GB)."),
         ("-1 GB", "--memory: must be a size of memory (got -1 GB)."),
         ("8 mm", '--memory: must be a size of memory (got "8 mm", a length).'),

@@ -642,7 +642,7 @@ async def test_random_requests_are_answered_and_none_of_them_is_a_failure_of_the
     await page.ask(say.Look, panes=())
     long = await page.ask(say.Run, command="identify", study=None, record="x" * 5000, options=())
     assert isinstance(long, say.Refusal)
-    assert "no such record" in long.problems[0].what
+    assert "record not found" in long.problems[0].what
 
 
 @on_page
@@ -793,7 +793,7 @@ def test_what_cannot_be_opened_is_refused(studio, tmp_path, capsys):
     for words, told in (
         ((tmp_path / "nowhere.toml",), "file not found"),
         ((tmp_path,), "not a file but a folder"),
-        ((tmp_path / "wrong.toml", "--port", port), f"--port {port}: it cannot be listened at: Address already in use"),
+        ((tmp_path / "wrong.toml", "--port", port), f"--port {port}: cannot listen on this port: Address already in use"),
     ):
         assert run(["studio", "--no-browser", *map(str, words)]) == 2
         assert told in capsys.readouterr().err

@@ -112,8 +112,8 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
         ('case = "parallelogram"', 'design = "none.toml"', "file not found"),
         ("responses.f", "responses.young", 'responses.young: column "young" exists already, from variables.young'),
         ("young = {", "design = {", 'variables.design: column "design" exists already, from the number of a design'),
-        ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or has control characters"),
-        ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: its name is empty, or has control characters"),
+        ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or contains control characters"),
+        ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: its name is empty, or contains control characters"),
         (
             "flexstage study 1",
             "flexstage 1",

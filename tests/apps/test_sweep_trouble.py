@@ -107,7 +107,7 @@ def test_a_damaged_piece_is_named(tmp_path, flexstage):
     folder.mkdir()
     (folder / "000000000256.npz").write_bytes(b"none")
     done = flexstage("sweep", "study.toml", "-o", "r.h5", "--resume")
-    assert (done.code, "000000000256.npz: it is no piece" in done.err) == (2, True), done.err
+    assert (done.code, "000000000256.npz: not a piece" in done.err) == (2, True), done.err
 
 
 def test_what_made_results_is_kept(whole, tmp_path):

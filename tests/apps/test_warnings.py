@@ -162,10 +162,10 @@ REPORTED = {
     "identify record.uff": "S is the only output",
     "compare stage.toml --record record.uff": "not found in the experiment",
     "hysteresis stack.csv": "67% of the actuator's range",
-    "sweep study.toml -o r.h5 --workers 1": "load factor goes down to 2.01 (mass 2.5 kg)",
+    "sweep study.toml -o r.h5 --workers 1": "smallest load factor 2.01 (mass 2.5 kg)",
     "optimise least.toml": "load factor 2.01",
-    "optimise front.toml": "load factor goes down to 2.01",
-    "tolerance tolerance.toml --workers 1": "load factor goes down to 0.232 (leaf -0.25 mm)",
+    "optimise front.toml": "smallest load factor 2.01",
+    "tolerance tolerance.toml --workers 1": "smallest load factor 0.232 (leaf -0.25 mm)",
     "stroke stage.toml --drive platform.y --steps 2": "got 122 mm, expected 1 mm or less",
     "buckle stage.toml --scale-load platform.fx=-1kN": "got 122 mm, expected 1 mm or less",
     "misalign stage.toml": "got 122 mm, expected 1 mm or less",
@@ -211,7 +211,7 @@ def test_every_report_tells_the_warnings_of_the_document(reported: Command, tmp_
     ("words", "told"),
     [
         ("optimise least.toml -o -", "load factor 2.01"),
-        ("sweep study.toml -o r.h5 --workers 1 --report -", "load factor goes down to 2.01"),
+        ("sweep study.toml -o r.h5 --workers 1 --report -", "smallest load factor 2.01"),
         ("hysteresis stack.csv --limits 0V 1500V --report -", "67% of the actuator's range"),
     ],
 )

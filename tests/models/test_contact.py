@@ -75,7 +75,7 @@ def test_a_link_drawn_backwards_is_told_to_turn() -> None:
     link = replace(base.links["leaf"], joins=("platform", "arm"))
     finding = only(replace(base, links={"leaf": link}))
     assert "drawn from arm to platform" in finding.what
-    assert "Turn `along` round" in finding.advice
+    assert "Reverse `along`" in finding.advice
     turned = replace(base, links={"leaf": replace(link, along=(-1.0, 0.0, 0.0))})
     assert contact_findings(turned) == ()
 
@@ -83,7 +83,7 @@ def test_a_link_drawn_backwards_is_told_to_turn() -> None:
 def test_a_link_that_meets_its_body_beside_the_end_face() -> None:
     rail = Block("steel", (0.03, 0.004, 0.02), at=(0.005, 0.0025, 0.0))  # lies on the side y = 0.5 mm of the leaf
     finding = only(stage({"block": BLOCK, "rail": rail}))
-    assert "beside its end face" in finding.what
+    assert "outside its end face" in finding.what
 
 
 @pytest.mark.parametrize(("shift", "said"), [((0.0, 3e-5, 0.0), "30 um away"), ((0.02, 0.0, 0.0), "along an edge")])
@@ -144,7 +144,7 @@ def test_copies_are_named_with_the_first() -> None:
     units = {**base.units, "horizontal": replace(unit, links={**unit.links, "back": back})}
     finding = only(replace(base, units=units))
     assert finding.where == "B1/back"
-    assert "10 um away from B1/base (alike: B2/back, B3/back)" in finding.what
+    assert "10 um away from B1/base (also B2/back, B3/back)" in finding.what
 
 
 def test_a_part_without_shape_is_named() -> None:

@@ -62,7 +62,7 @@ def test_kept_computed_and_plain_hinges_are_the_same(tmp_path: Path) -> None:
     assert same(kept(ROD, ways), computed)
     assert path.read_bytes() == before
     (notice,) = notices
-    assert "do not have the checksum it states" in notice.what
+    assert "wrong checksum of its" in notice.what
 
 
 def test_what_is_refused_there_is_refused_here() -> None:

@@ -41,8 +41,8 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
     ]
     text = f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}" if beyond else words
     headline = Headline(to_typography(text), not beyond)
-    said = "Bodies and flexures are shown at large displacements. Red: beyond a limit."
-    return _page(mechanism, "A stroke at large displacements", found.provenance, headline, data, sections=sections, said=said)
+    caption = "Bodies and flexures are shown at large displacements. Red: beyond a limit."
+    return _page(mechanism, "A stroke at large displacements", found.provenance, headline, data, sections=sections, said=caption)
 
 
 def stroke_tables(found: Stroke) -> list[Table]:
@@ -57,11 +57,11 @@ def stroke_tables(found: Stroke) -> list[Table]:
 def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
     """Results at every point of a path: one row for each point, one column for each quantity in its own display unit."""
     kept = quiet(along.values)
-    told = list(quantities_of(replace(along, values=kept)))
-    heads = [Column(name, "" if form.unit == "1" else form.unit) for name, _, form in told]
-    rows = zip(*(number_cells(values, form) for _, values, form in told), strict=True)
-    said = [NOISE_RULE] if np.any((kept == 0.0) & (along.values != 0.0)) else []
-    return make_table(title, heads, rows, notes=[*notes, *said])
+    quantities = list(quantities_of(replace(along, values=kept)))
+    heads = [Column(name, "" if form.unit == "1" else form.unit) for name, _, form in quantities]
+    rows = zip(*(number_cells(values, form) for _, values, form in quantities), strict=True)
+    noise = [NOISE_RULE] if np.any((kept == 0.0) & (along.values != 0.0)) else []
+    return make_table(title, heads, rows, notes=[*notes, *noise])
 
 
 def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | None = None) -> str:
@@ -78,8 +78,8 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | No
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
     ]
     headline = Headline(to_typography(_buckling_text(found)), least is None or least.factor >= max(1.0, found.demand))
-    said = "The amplitude of the mode is arbitrary: the slider sets it." if known else ""
-    return _page(mechanism, "Buckling", found.provenance, headline, data, sections=sections, said=said)
+    caption = "The amplitude of the mode is arbitrary: the slider sets it." if known else ""
+    return _page(mechanism, "Buckling", found.provenance, headline, data, sections=sections, said=caption)
 
 
 def _buckling_text(found: CaseFactors) -> str:
@@ -179,11 +179,11 @@ def misalignments_text(found: Misalignments) -> str:
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
         return "no instance and no link joins the ground"
-    told = f"{_misaligned_text(worst)}, the first"
+    summary = f"{_misaligned_text(worst)}, the first"
     if np.isnan(worst.critical) and not np.ptp(found.followed.values):
         where = f"{worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]}"
-        told = f"all are stable up to there; highest stress: {where}"
-    return f"{count} misaligned one by one: {told}"
+        summary = f"all are stable up to there; highest stress: {where}"
+    return f"{count} misaligned one by one: {summary}"
 
 
 def critical_text(found: Misaligned) -> str:

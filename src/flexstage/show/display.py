@@ -159,9 +159,9 @@ def align_numbers(values: Iterable[float], digits: int = DIGITS) -> list[str]:
     sizes = [abs(value) for value in items if math.isfinite(value) and value != 0.0]
     if not sizes or max(sizes) / min(sizes) > 1e4 or not 1e-4 <= max(sizes) < 1e6:
         return [number(value, digits) for value in items]
-    wanted = digits + (1 if max(sizes) / min(sizes) > 10.0 else 0)
-    decimals = max(0, wanted - 1 - math.floor(math.log10(max(sizes))))
-    decimals = min(decimals, max(_decimals(number(value, wanted)) for value in items))
+    significant = digits + (1 if max(sizes) / min(sizes) > 10.0 else 0)
+    decimals = max(0, significant - 1 - math.floor(math.log10(max(sizes))))
+    decimals = min(decimals, max(_decimals(number(value, significant)) for value in items))
     return [f"{value:.{decimals}f}" if math.isfinite(value) and value != 0.0 else number(value) for value in items]
 
 

@@ -99,8 +99,8 @@ def analysis_body(analysis: Analysis) -> Document:
     documents = {name: None if found is None else plain(found) for name, found in analysis_results(analysis).items()}
     loading = None if analysis.loaded is None else plain(analysis.loaded)
     small = None if analysis.second_order is None else plain(analysis.second_order)
-    told = {"requirements": requirements_body(analysis.verdicts), "loaded": loading, "second_order": small, **documents}
-    return told | ({"reasons": reasons} if reasons else {})
+    body = {"requirements": requirements_body(analysis.verdicts), "loaded": loading, "second_order": small, **documents}
+    return body | ({"reasons": reasons} if reasons else {})
 
 
 def stiffness_body(
@@ -129,16 +129,16 @@ def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:
 
 
 def _verdict(verdict: Verdict) -> Document:
-    asked = verdict.requirement
+    requirement = verdict.requirement
     return {
-        "key": asked.key,
-        "text": asked.text,
+        "key": requirement.key,
+        "text": requirement.text,
         "passed": bool(verdict.passed),
         "value": verdict.value,
-        "limit": asked.limit,
-        "unit": asked.quantity.si,
-        "sense": asked.sense.value,
-        "point": asked.point,
+        "limit": requirement.limit,
+        "unit": requirement.quantity.si,
+        "sense": requirement.sense.value,
+        "point": requirement.point,
         "margin": None if verdict.value is None else verdict.margin,
         **({"reason": verdict.reason} if verdict.reason else {}),
     }

@@ -157,13 +157,13 @@ def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
 def _state_space(model: LinearModel, notes: list[str]) -> dict[str, Any]:
     """State space from all inputs to the external outputs: twists of platform and points, gauges."""
     places = {each.name.rpartition(".")[0] for each in model.inputs if each.unit != "m"}
-    seen = [each.name for each in model.outputs if each.name.rpartition(".")[0] in places | {""}]
+    outputs = [each.name for each in model.outputs if each.name.rpartition(".")[0] in places | {""}]
     try:
         law = damping_law(model)
     except DesignError as error:
         notes.append(f"state_space: {error}")
         return {}
-    space = state_space(model, ports(model, seen, [each.name for each in model.inputs]), law)
+    space = state_space(model, ports(model, outputs, [each.name for each in model.inputs]), law)
     cells = {key: _cells(value) if isinstance(value, list) else value for key, value in space.to_dict().items()}
     return {"state_space": cells}
 

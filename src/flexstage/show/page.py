@@ -157,9 +157,9 @@ def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, St
     """
     scripts = [_static("report.js"), *([bundle()] if stages else [])]
     kept = [each for each in sections if each is not None]
-    told = printable(str(templates().page(head, kept, _static("report.css"), _policy(scripts))), keep="\n\t")
+    text = printable(str(templates().page(head, kept, _static("report.css"), _policy(scripts))), keep="\n\t")
     data = "".join(data_script(key, each) for key, each in stages.items())
-    return told + data + "".join(f"<script>{each}</script>" for each in scripts) + "</body></html>\n"
+    return text + data + "".join(f"<script>{each}</script>" for each in scripts) + "</body></html>\n"
 
 
 def _policy(scripts: Iterable[str]) -> str:

@@ -184,6 +184,6 @@ def _sizes(axes: Any, data: StageData, reach: Array) -> None:
         [[left, x - 4.0], [high, high]],
     ):
         axes.plot(*ends, color=INK, linewidth=0.4)
-    said = {"ha": "center", "va": "center", "fontsize": 7.5, "bbox": _PLATE}
-    axes.text(0.5 * (left + right), y, number(float(right - left)), **said)
-    axes.text(x, 0.5 * (low + high), number(float(high - low)), rotation=90, **said)
+    style = {"ha": "center", "va": "center", "fontsize": 7.5, "bbox": _PLATE}
+    axes.text(0.5 * (left + right), y, number(float(right - left)), **style)
+    axes.text(x, 0.5 * (low + high), number(float(high - low)), rotation=90, **style)

@@ -279,7 +279,7 @@ def result_table(source: Any, fields: str = "", *, title: str = "", notes: Itera
         return None
     layout, paths, title = one.TABLE, (fields or one.TABLE.fields).split(), (title or one.TABLE.title).format(self=one)
     said = [
-        *chain.from_iterable(_told(text, source, one) for text in layout.notes),
+        *chain.from_iterable(_note_texts(text, source, one) for text in layout.notes),
         *(getattr(one, "notes", ()) if one is source else ()),
         *notes,
     ]
@@ -291,7 +291,7 @@ def result_table(source: Any, fields: str = "", *, title: str = "", notes: Itera
     return table if table.rows else None
 
 
-def _told(text: str, source: Any, one: Any) -> list[str]:
+def _note_texts(text: str, source: Any, one: Any) -> list[str]:
     """A note of a result, or of results by name, one for each if they differ."""
     notes = {name: text.format(self=each) for name, each in (source if isinstance(source, Mapping) else {"": one}).items()}
     alike = list(dict.fromkeys(notes.values()))

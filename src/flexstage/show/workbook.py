@@ -92,14 +92,14 @@ def _widths(grid: Grid) -> Iterator[int]:
 
 def _about(result: Any, about: Mapping[str, Any]) -> Grid:
     own = getattr(result, PROVENANCE, None)
-    said = {
+    entries = {
         "flexstage": __version__,
         "units": "SI, below the heads or in their names",
         **about,
         **({PROVENANCE: own} if own else {}),
     }
-    rows = [(key, value) for key, value in said.items() if not isinstance(value, (list, tuple))]
-    rows += [(key, str(each)) for key, value in said.items() if isinstance(value, (list, tuple)) for each in value]
+    rows = [(key, value) for key, value in entries.items() if not isinstance(value, (list, tuple))]
+    rows += [(key, str(each)) for key, value in entries.items() if isinstance(value, (list, tuple)) for each in value]
     return Grid(("what", "value"), ("", ""), tuple(rows), 1)
 
 

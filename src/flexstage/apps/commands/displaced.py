@@ -189,16 +189,16 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
     return Beyond(path, over_stroke(path))
 
 
-def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase:
+def _case(mechanism: Mechanism, place: Place, scaled: Sequence[str]) -> LoadCase:
     """The load case of the options: the scaled load, else the weight, and the operating point."""
     model = nonlinear(mechanism)
-    grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, asked.load or ()), asked.brought(model)
-    require_consistent(model, there, {**grows, **stays}, asked.locked)
+    grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, place.load or ()), place.brought(model)
+    require_consistent(model, there, {**grows, **stays}, place.locked)
     text, where = (
         (", ".join(scaled) or WEIGHT),
-        ", ".join([*(asked.at or ()), *(asked.load or ()), *(f"{name} fixed" for name in asked.locked)]),
+        ", ".join([*(place.at or ()), *(place.load or ()), *(f"{name} fixed" for name in place.locked)]),
     )
-    return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, stays=stays, at=there, locked=asked.locked)
+    return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, stays=stays, at=there, locked=place.locked)
 
 
 def _unanswered(found: CaseFactors) -> Iterator[Finding]:

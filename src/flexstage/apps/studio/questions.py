@@ -241,8 +241,8 @@ def _facts(link: PlacedLink | PlacedSuperelement) -> Iterator[Fact]:
     from flexstage.show.viewer.parts import part_facts
 
     yield Fact("joins", " – ".join(link.joins))
-    for name, said in part_facts(inner(link.part)):
-        yield Fact(name, said)
+    for name, text in part_facts(inner(link.part)):
+        yield Fact(name, text)
     if isinstance(link, PlacedLink) and link.material is not None:
         yield Fact("material", getattr(inner(link.part), "material", ""))
 
@@ -337,11 +337,11 @@ def _margin_slopes(known: Bench, worst: Verdict | None, found: Sensitivities) ->
     """Change of the worst requirement's margin by one per cent of each number, by complex step if the measure has a derivative."""
     if worst is None:
         return {}
-    asked, names = worst.requirement, found.parameters
-    sign = (1.0 if asked.sense is Sense.AT_LEAST else -1.0) / abs(asked.limit or 1.0)
-    if asked.kind in (frequency, platform_frequency):
-        index = int(asked.name) - 1
-        place_ = known.modes.platform[index] if asked.kind is platform_frequency else index
+    requirement, names = worst.requirement, found.parameters
+    sign = (1.0 if requirement.sense is Sense.AT_LEAST else -1.0) / abs(requirement.limit or 1.0)
+    if requirement.kind in (frequency, platform_frequency):
+        index = int(requirement.name) - 1
+        place_ = known.modes.platform[index] if requirement.kind is platform_frequency else index
         if place_ >= len(found.frequencies):
             return {}
         relative = found.frequency[:, place_] * found.values
@@ -352,7 +352,7 @@ def _margin_slopes(known: Bench, worst: Verdict | None, found: Sensitivities) ->
         batch = bench_of(step_parameters(known.mechanism, own))
         batch.command = known.command
         try:
-            value = value_or_reason(batch, asked)
+            value = value_or_reason(batch, requirement)
         except (TypeError, ValueError):  # no batch of such numbers is supported (gravity)
             value = ""
         if isinstance(value, str) or not np.iscomplexobj(value):

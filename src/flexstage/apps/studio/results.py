@@ -93,7 +93,7 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
     stiff = attempt.of("stiffness", lambda: statics(known.felt.model))
     lost = attempt.of("loss", lambda: known.felt.lost)
     found = attempt.of("modes", lambda: known.felt.modes)
-    heard = attempt.of("response", lambda: _response(known, choice))
+    response = attempt.of("response", lambda: _response(known, choice))
     missing = {**attempt.missing, **({} if stiff is None else stiff.reasons)}
     return Figures(
         revision,
@@ -102,8 +102,8 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
         None if stiff is None else matrix(stiff.compliance),
         () if lost is None else tuple(_losses(lost)),
         () if found is None else tuple(_modes(known.felt.model, found)),
-        None if heard is None else floats(heard.frequencies),
-        () if heard is None else tuple(_curves(heard)),
+        None if response is None else floats(response.frequencies),
+        () if response is None else tuple(_curves(response)),
         "" if found is None else _loading(known),
         missing,
         timer.spent,
@@ -176,9 +176,9 @@ def drawn(text: str, file: str) -> StageData:
 
 def matrix(found: Labelled) -> Matrix:
     """A labelled matrix as a message."""
-    said = found.to_json()
-    unit = said["unit"] if isinstance(said["unit"], str) else tuple(map(tuple, said["unit"]))
-    return Matrix(tuple(said["rows"]), tuple(said["columns"]), unit, tuple(map(tuple, said["values"])))
+    document = found.to_json()
+    unit = document["unit"] if isinstance(document["unit"], str) else tuple(map(tuple, document["unit"]))
+    return Matrix(tuple(document["rows"]), tuple(document["columns"]), unit, tuple(map(tuple, document["values"])))
 
 
 def _loading(known: Bench) -> str:
@@ -230,12 +230,12 @@ def _response(known: Bench, choice: Choice) -> Response:
     return response(model, outputs or ("platform",), inputs or (model.actuators or ("ground.z",))[:1], grid)
 
 
-def _curves(heard: Response) -> Iterator[Curve]:
-    size, phase = np.abs(heard.values), np.degrees(np.angle(heard.values))
-    for row, output in enumerate(heard.outputs):
-        for column, source in enumerate(heard.inputs):
+def _curves(response: Response) -> Iterator[Curve]:
+    size, phase = np.abs(response.values), np.degrees(np.angle(response.values))
+    for row, output in enumerate(response.outputs):
+        for column, source in enumerate(response.inputs):
             values = floats(size[:, row, column]), floats(phase[:, row, column])
-            yield Curve(_name(source), _name(output), heard.units[row][column], *values)
+            yield Curve(_name(source), _name(output), response.units[row][column], *values)
 
 
 def _name(port: Any) -> str:
@@ -318,22 +318,22 @@ def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:
 
 
 def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judgement:
-    asked = verdict.requirement
-    fitting = display_unit_of(asked.quantity.si, abs(asked.limit))
-    form = fitting if preferred_unit(asked.quantity.si).factor != 1.0 else field_unit(asked.quantity)
+    requirement = verdict.requirement
+    fitting = display_unit_of(requirement.quantity.si, abs(requirement.limit))
+    form = fitting if preferred_unit(requirement.quantity.si).factor != 1.0 else field_unit(requirement.quantity)
     value = finite(verdict.value)
     return Judgement(
-        asked.key,
-        asked.text,
-        asked.point,
-        asked.quantity.si,
+        requirement.key,
+        requirement.text,
+        requirement.point,
+        requirement.quantity.si,
         "" if form.unit == "1" else form.unit,
         1.0 / form.factor,
-        asked.limit,
+        requirement.limit,
         value,
         finite(old.value),
         None if value is None else float(verdict.margin),
         bool(verdict.passed),
         verdict.reason,
-        line_of(f"requirements.{asked.text}", lines) or line_of(f"requirements.{asked.key}", lines),
+        line_of(f"requirements.{requirement.text}", lines) or line_of(f"requirements.{requirement.key}", lines),
     )

@@ -140,14 +140,14 @@ class Session:
         value = request.text if isinstance(request, say.Set) else request.value
         async with self._changing:
             text, revision = self.history.text, self.history.revision
-            written = await self._asked(self._quick, "write", text, self._file, request.address, value)
+            written = await self._task_value(self._quick, "write", text, self._file, request.address, value)
             if self.history.revision != revision:
                 raise refuse(request.address, "the text was changed meanwhile", "Set it again")
             self._take(self.history.change(written, page))
 
     async def _insert(self, request: say.Insert, page: int, _: Tell) -> None:
         async with self._changing:
-            written = await self._asked(self._quick, "insert", self.history.text, request.snippet, request.fields)
+            written = await self._task_value(self._quick, "insert", self.history.text, request.snippet, request.fields)
             self._take(self.history.change(written, page))
 
     async def _undo(self, request: say.Undo | say.Redo, page: int, _: Tell) -> None:
@@ -197,7 +197,7 @@ class Session:
     async def _compare(self, request: say.Compare, *_: Any) -> say.Said:
         """Figures of the file, of all pinned designs and of the present one."""
         texts = {"file": self.stored.text, **self.history.pins, "now": self._design}
-        tables = [await self._asked(self._model, "compared", text, self._file) for text in texts.values()]
+        tables = [await self._task_value(self._model, "compared", text, self._file) for text in texts.values()]
         known = {each.name: each for table in tables for each in table}
         by_name = [{each.name: each.value for each in table} for table in tables]
         rows = tuple(_row(each, by_name[-1].get(name), by_name[0].get(name)) for name, each in known.items())
@@ -211,18 +211,18 @@ class Session:
         return outcome and say.Frequencies(request.id, request.address, request.value, outcome.value or (), outcome.problems)
 
     async def _pose(self, request: say.Pose, *_: Any) -> say.Said | None:
-        return await self._asked_while(self._is_newest(request), self._model, "posed", request.id, request.inputs)
+        return await self._task_value_while(self._is_newest(request), self._model, "posed", request.id, request.inputs)
 
     async def _ask(self, request: Any, *_: Any) -> say.Said:
         """The result of one task, for the request or the computed design."""
         helper = self._quick if isinstance(request, say.Line) else self._model
         _id, *own = vars(request).values()
-        return await self._asked(helper, _TASKS[type(request)], self._design, self._file, request.id, *(own or [self._computed]))
+        return await self._task_value(helper, _TASKS[type(request)], self._design, self._file, request.id, *(own or [self._computed]))
 
     async def _respond(self, request: say.Respond, *_: Any) -> None:
         """Change the choice of responses; refused if the stage has none of that name."""
         choice = (request.inputs, request.outputs, request.low, request.high)
-        found = await self._asked(self._model, "figures", self._design, self._file, self.stored.text, self._computed, choice)
+        found = await self._task_value(self._model, "figures", self._design, self._file, self.stored.text, self._computed, choice)
         if "response" in found.missing:
             raise refuse("response", found.missing["response"].rstrip("."), "Choose among its inputs and outputs")
         self._choice = choice
@@ -232,13 +232,13 @@ class Session:
         """Run in a separate process, because of its duration; nothing for an outdated text."""
         self._slow = self._slow or Helper(self._died)
         revision = self._computed
-        return await self._asked_while(lambda: self._computed == revision, self._slow, "slopes", request.id, revision)
+        return await self._task_value_while(lambda: self._computed == revision, self._slow, "slopes", request.id, revision)
 
     async def _travel(self, request: say.Travel, _: int, tell: Tell) -> say.Said:
         """Run in a separate process, which ends with an abort, because of its duration; a new path replaces the running one."""
         self._far = self._far or Helper(self._died)
         self._far.start_anew()
-        return await self._asked(self._far, "travelled", self._design, self._file, self._computed, request, heard=tell)
+        return await self._task_value(self._far, "travelled", self._design, self._file, self._computed, request, heard=tell)
 
     async def _halt(self, *_: Any) -> None:
         if self._far is not None:
@@ -456,14 +456,14 @@ class Session:
         """The process for reading texts and for sliders."""
         return self._reader or self._model
 
-    async def _asked(self, helper: Helper, *call: Any, heard: Callable[[Any], None] = nobody) -> Any:
+    async def _task_value(self, helper: Helper, *call: Any, heard: Callable[[Any], None] = nobody) -> Any:
         """The value of a task; raises `RefusedError` after a refusal."""
         outcome = await helper.ask(*call, heard=heard)
         if outcome is None or outcome.problems:
             raise RefusedError(outcome.problems if outcome else ())
         return outcome.value
 
-    async def _asked_while(self, wanted: Callable[[], bool], helper: Helper, task: str, *arguments: Any) -> Any:
+    async def _task_value_while(self, wanted: Callable[[], bool], helper: Helper, task: str, *arguments: Any) -> Any:
         """The result of a task on the design; nothing if it is no longer wanted at its turn."""
         outcome = await helper.ask(task, self._design, self._file, *arguments, wanted=wanted)
         if outcome is not None and outcome.problems:

@@ -23,23 +23,23 @@ _FOUND = 0.1
 """Fraction of the work for the equilibria; the remainder is for results at each."""
 
 
-def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable[[Underway], None]) -> Travelled:
+def travelled(text: str, file: str, revision: int, request: Travel, tell: Callable[[Underway], None]) -> Travelled:
     """A path of the design in a text, relative to static equilibrium, for the viewer; `tell` receives its progress."""
     mechanism = design(text, file)
     model = nonlinear(mechanism)
-    wanted = _stated(mechanism, asked.path) if asked.path else _own(model, asked)
+    wanted = _stated(mechanism, request.path) if request.path else _own(model, request)
     count = len(wanted.values)
     rest = wanted.rest(model)
     found = wanted.path(model, rest)
 
     def done(points: int) -> None:
-        tell(Underway(asked.id, _FOUND + (1.0 - _FOUND) * points / count, f"{points} of {count} points"))
+        tell(Underway(request.id, _FOUND + (1.0 - _FOUND) * points / count, f"{points} of {count} points"))
 
     done(0)
     told = stroke(found, rest, kinematics=ideal(mechanism) if wanted.drive in model.assembly.strokes else None)
     done(count)
     shown = stroke_data(mechanism, found, told).document()
-    return Travelled(asked.id, revision, shown["motions"], problems_of(told.warnings, text, file))
+    return Travelled(request.id, revision, shown["motions"], problems_of(told.warnings, text, file))
 
 
 def _stated(mechanism: Mechanism, name: str) -> Course:
@@ -48,10 +48,10 @@ def _stated(mechanism: Mechanism, name: str) -> Course:
     return course(mechanism, name)
 
 
-def _own(model: Nonlinear, asked: Travel) -> Course:
+def _own(model: Nonlinear, request: Travel) -> Course:
     """A path defined by the page."""
-    if not 2 <= asked.points <= _MOST:
-        raise refuse("points", f"must be 2 to {_MOST} points (got {asked.points})", "Change the number of points")
-    quantity = quantity_of(model, asked.drive)
-    low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((asked.start, "from"), (asked.end, "to")))
-    return Course(asked.drive, np.linspace(low, high, asked.points), loads_of(model, asked.loads), (), 1.0)
+    if not 2 <= request.points <= _MOST:
+        raise refuse("points", f"must be 2 to {_MOST} points (got {request.points})", "Change the number of points")
+    quantity = quantity_of(model, request.drive)
+    low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((request.start, "from"), (request.end, "to")))
+    return Course(request.drive, np.linspace(low, high, request.points), loads_of(model, request.loads), (), 1.0)

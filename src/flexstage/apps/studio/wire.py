@@ -67,10 +67,10 @@ def _read(text: str | bytes, kinds: _Kinds) -> Any:
         found = json.loads(text)
     except (ValueError, RecursionError):
         raise refuse("message", "this is no JSON", _ADVICE) from None
-    return _told(found, kinds)
+    return _message(found, kinds)
 
 
-def _told(found: Any, kinds: _Kinds) -> Any:
+def _message(found: Any, kinds: _Kinds) -> Any:
     kind = kinds.get(str(found.get("kind"))) if isinstance(found, dict) else None
     if kind is None:
         raise refuse("message", "its kind is not known here", _ADVICE)

@@ -84,17 +84,17 @@ def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], C
 
         @wraps(function)
         def run(*_: _Given.args, **options: _Given.kwargs) -> None:
-            given: dict[str, Any] = {**options}
-            outputs = {name: given[name] for name in ("json", "xlsx", *files)}
-            read = [path for name, each in given.items() if name not in outputs and name != "csv" for path in _paths(each)]
+            values: dict[str, Any] = {**options}
+            outputs = {name: values[name] for name in ("json", "xlsx", *files)}
+            read = [path for name, each in values.items() if name not in outputs and name != "csv" for path in _paths(each)]
             written = ((name, each) for name, target in outputs.items() for each in (target if isinstance(target, list) else [target]))
             require_writable([(f"--{name}", target) for name, target in written], read)
-            made = {name: kind(**{each.name: given[each.name] for each in _options(kind)}) for name, kind in groups.items()}
+            made = {name: kind(**{each.name: values[each.name] for each in _options(kind)}) for name, kind in groups.items()}
             opened = {name: each.open() for name, each in made.items() if isinstance(each, DesignOptions)}
             called: Any = function
-            found = called(**{name: ({**made, **given} | opened)[name] for name in own})
+            found = called(**{name: ({**made, **values} | opened)[name] for name in own})
             if found is not None:
-                write_result(found.kind or function.__name__.replace("_", "-"), found, outputs, given["csv"])
+                write_result(found.kind or function.__name__.replace("_", "-"), found, outputs, values["csv"])
                 if found.failed:
                     raise typer.Exit(MISSED)
 
@@ -116,9 +116,9 @@ def _options(kind: type) -> list[Parameter]:
     ]
 
 
-def _paths(given: Any) -> list[Path]:
+def _paths(value: Any) -> list[Path]:
     """The files among the values of an option."""
-    return [each for each in (given if isinstance(given, list | tuple) else [given]) if isinstance(each, Path)]
+    return [each for each in (value if isinstance(value, list | tuple) else [value]) if isinstance(each, Path)]
 
 
 def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], csv: Path | None) -> None:

@@ -76,8 +76,8 @@ def _valid(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
 
 def _where(text: str, inner: str) -> str:
     """The assignment, and the location of an error if it adds information."""
-    said = {text.partition("=")[0].strip(), f'"{text}"'}
-    return f"--set {text}" if inner in said else f"--set {text}: {inner}"
+    parts = {text.partition("=")[0].strip(), f'"{text}"'}
+    return f"--set {text}" if inner in parts else f"--set {text}: {inner}"
 
 
 def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -> LinearModel:

@@ -133,15 +133,15 @@ class Footing:
         return () if self.operating_point is None else self.operating_point.warnings
 
 
-def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> Footing:
+def footing(mechanism: Mechanism, place: Place, model: Model = Model.LUMPED) -> Footing:
     """The stage at the requested operating point. Refuses an operating point with a model without large displacements."""
-    if not asked:
+    if not place:
         return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
-        raise refuse(asked.options, f"the {model.value} model has no operating points", "Leave out --model, or the operating point")
+        raise refuse(place.options, f"the {model.value} model has no operating points", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
     there = operating_points.operating_point(
-        mechanism, asked.brought(known), loads=loads_of(known, asked.load or ()), fixed=asked.locked, temperature=asked.warmth
+        mechanism, place.brought(known), loads=loads_of(known, place.load or ()), fixed=place.locked, temperature=place.warmth
     )
     return Footing(mechanism, model, there)
 

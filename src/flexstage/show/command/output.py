@@ -79,10 +79,10 @@ def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iter
     require(_problems(wanted, read))
 
 
-def _problems(wanted: Iterable[tuple[str, str | Path | None]], read: Iterable[Path]) -> Iterator[Finding]:
+def _problems(outputs: Iterable[tuple[str, str | Path | None]], read: Iterable[Path]) -> Iterator[Finding]:
     taken = {_real_path(path): "read by this command" for path in read}
     spoken: str | None = None
-    for option, target in wanted:
+    for option, target in outputs:
         if target is not None and str(target) == STDOUT:
             if spoken is not None:
                 yield Finding(option, f"stdout is the output of {spoken} too", "Write one of them to a file")

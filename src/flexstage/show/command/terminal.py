@@ -74,16 +74,16 @@ def _fill() -> None:
             os.open(os.devnull, mode)  # takes the lowest free number
 
 
-def _stream(given: TextIO | None, number: int) -> TextIO:
+def _stream(stream: TextIO | None, number: int) -> TextIO:
     try:
-        number = number if given is None else given.fileno()
+        number = number if stream is None else stream.fileno()
     except io.UnsupportedOperation:  # a notebook's
-        return given or sys.__stdout__ or io.StringIO()
+        return stream or sys.__stdout__ or io.StringIO()
     except ValueError:  # closed by the program that called this
         pass
-    raw = _Raw(number, told=number != 2 if given is None else given is sys.stdout)
-    by_lines = given is sys.stderr or raw.isatty()
-    return _Printable(io.BufferedWriter(raw), getattr(given, "encoding", None) or "utf-8", "backslashreplace", line_buffering=by_lines)
+    raw = _Raw(number, told=number != 2 if stream is None else stream is sys.stdout)
+    by_lines = stream is sys.stderr or raw.isatty()
+    return _Printable(io.BufferedWriter(raw), getattr(stream, "encoding", None) or "utf-8", "backslashreplace", line_buffering=by_lines)
 
 
 class _Raw(io.FileIO):

@@ -36,9 +36,9 @@ def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
     pixel = row[span] * width + column
     buffer = np.full(height * width, -np.inf, dtype=np.float32)
     np.maximum.at(buffer, pixel, depth)
-    seen = depth == buffer[pixel]
+    visible = depth == buffer[pixel]
     found = np.full(height * width, -1, dtype=np.int32)
-    found[pixel[seen]] = face[span[seen]]
+    found[pixel[visible]] = face[span[visible]]
     return found.reshape(shape), buffer.reshape(shape)
 
 

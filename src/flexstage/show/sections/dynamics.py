@@ -66,8 +66,8 @@ def _shares(modes: Modes, index: int) -> str:
         owner = name.partition("/")[0]
         shares[owner] = shares.get(owner, 0.0) + float(energy)
     ranked = sorted((each for each in shares.items() if each[1] >= _LEAST), key=lambda each: -round(each[1], 3))
-    told = [f"{name} {percent(share, 2 if share < 0.1 else 3)}" for name, share in ranked[:_NAMED]]
-    return ", ".join(told) + (", others" if len(ranked) > _NAMED else "")
+    texts = [f"{name} {percent(share, 2 if share < 0.1 else 3)}" for name, share in ranked[:_NAMED]]
+    return ", ".join(texts) + (", others" if len(ranked) > _NAMED else "")
 
 
 def response_section(analysis: Analysis) -> Section | None:

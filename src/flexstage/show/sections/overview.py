@@ -61,5 +61,5 @@ def summary_section(analysis: Analysis) -> Section | None:
     >>> summary_section(analyse(double_triangle(), Model.IDEAL)).blocks[0].text.partition(": ")[2]
     '6 freedoms (x, y, z, rx, ry, rz), 6 actuators, 6 gauges'
     """
-    said = (stage_text(analysis), *summary_tables(analysis, explained=True))
-    return section("Summary", [Prose(each) if isinstance(each, str) else each for each in said])
+    parts = (stage_text(analysis), *summary_tables(analysis, explained=True))
+    return section("Summary", [Prose(each) if isinstance(each, str) else each for each in parts])

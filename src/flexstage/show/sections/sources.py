@@ -76,10 +76,10 @@ def limit_section(analysis: Analysis) -> Section | None:
 
 
 def _missing_table(analysis: Analysis) -> Table | None:
-    gone = dict(analysis.missing)
+    missing = dict(analysis.missing)
     if analysis.workspace is not None:
-        gone |= {f"workspace: {name}": reason for name, reason in analysis.workspace.reasons.items()}
-    return text_table("Missing results", ["result", "reason"], {name.replace("_", " "): reason for name, reason in gone.items()})
+        missing |= {f"workspace: {name}": reason for name, reason in analysis.workspace.reasons.items()}
+    return text_table("Missing results", ["result", "reason"], {name.replace("_", " "): reason for name, reason in missing.items()})
 
 
 def error_of_theory_table(mechanism: Mechanism) -> Table | None:

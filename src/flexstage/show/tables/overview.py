@@ -83,7 +83,7 @@ def small_line(analysis: Analysis) -> str | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> small_line(analyse(double_triangle(), Model.MAPPED)).partition(" (")[0]
-    'Over the strokes linear kinematics is off by up to 0.0016 %'
+    'Over the strokes the error of linear kinematics is up to 0.0016 %'
     """
     return None if analysis.second_order is None else analysis.second_order.text
 
@@ -137,15 +137,15 @@ def axis_table(analysis: Analysis) -> Table | None:
         "stiffness": stiffness,
         "resolution": resolution,
     }
-    told = {head: texts for head, texts in columns.items() if texts}
-    if not told:
+    shown = {head: texts for head, texts in columns.items() if texts}
+    if not shown:
         return None
     rows = [
-        (Cell(name, Mark.STRONG), *(Cell(texts[name]) if name in texts else Cell(NO_VALUE, Mark.FAINT) for texts in told.values()))
+        (Cell(name, Mark.STRONG), *(Cell(texts[name]) if name in texts else Cell(NO_VALUE, Mark.FAINT) for texts in shown.values()))
         for name in COMPONENTS
-        if any(name in texts for texts in told.values())
+        if any(name in texts for texts in shown.values())
     ]
-    heads = [Column(head, numeric=head != "limited by") for head in told]
+    heads = [Column(head, numeric=head != "limited by") for head in shown]
     return make_table("Platform", ["along", *heads], rows, notes=[_axis_note(analysis)])
 
 

@@ -24,6 +24,6 @@ def random_table(found: RandomResponse) -> Table:
     sums = np.sum(shares, axis=1, keepdims=True)
     values = np.column_stack([rms, shares / np.where(sums > 0.0, sums, 1.0)])
     units = tuple((channel.unit, *("%",) * len(found.inputs)) for channel in found.outputs)
-    told = Matrix(values, found.responding, ("rms", *(f"from {name}" for name in found.disturbing)), units)
+    table = Matrix(values, found.responding, ("rms", *(f"from {name}" for name in found.disturbing)), units)
     band = f"From {number(found.band[0], 4)} to {number(found.band[1], 4)} Hz; inputs uncorrelated. {found.method}."
-    return column_table("Random response", told, head="output", notes=[band], provenance=found.provenance)
+    return column_table("Random response", table, head="output", notes=[band], provenance=found.provenance)

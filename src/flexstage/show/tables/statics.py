@@ -52,11 +52,11 @@ def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
     ['x, free motion', 'y, constrained']
     """
     left, rest = freedoms.motions, freedoms.constraints
-    told = (*(f"{name}, free motion" for name in left.rows), *(f"{name}, constrained" for name in rest.rows))
+    names = (*(f"{name}, free motion" for name in left.rows), *(f"{name}, constrained" for name in rest.rows))
     whole = by_freedom(np.concatenate([left.values, rest.values], axis=-2), (*left.rows, *rest.rows))
     note = "Actuators fixed. Others free: as in a push test, including parasitic motion along other axes."
     locked = [f"{reason[:1].upper()}{reason[1:]}." for reason in sorted(set(freedoms.reasons.values()))]
-    found = replace(whole, rows=told, columns=("others free", "others fixed"))
+    found = replace(whole, rows=names, columns=("others free", "others fixed"))
     return column_table(f"Stiffness by DOF at {freedoms.point}", found, head="DOF", notes=(note, *locked))
 
 

@@ -50,8 +50,8 @@ def corner_table(corner: Utilisation) -> Table | None:
 
 def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
     """Readings of the gauges at the commanded corner against their ranges, and the pose resolution."""
-    seen = workspace.gauges
-    yield None if seen is None else result_table(seen, notes=[f"{command_text(seen.command)}, all at once."])
+    gauges = workspace.gauges
+    yield None if gauges is None else result_table(gauges, notes=[f"{command_text(gauges.command)}, all at once."])
     yield result_table(workspace.resolution)
 
 

@@ -60,12 +60,17 @@ def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
 def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: Beyond | None = None) -> StageData:
     """Buckling modes of a stage, about its last stable state in each load case: one motion for each case, and the path `after` one."""
     still = still_data(mechanism)
-    told = [motion for number, case in enumerate(cases) if case.found is not None for motion in _gives_way(still, case, case.found, number)]
+    motions = [
+        motion
+        for number, case in enumerate(cases)
+        if case.found is not None
+        for motion in _buckling_motions(still, case, case.found, number)
+    ]
     paths = [] if after is None else [_along(still, after.path.state, after.path.drive, after.stroke)]
-    return replace(still, motions=(*told, *paths))
+    return replace(still, motions=(*motions, *paths))
 
 
-def _gives_way(still: StageData, case: CaseFactor, found: Critical, number: int) -> Iterator[Motion]:
+def _buckling_motions(still: StageData, case: CaseFactor, found: Critical, number: int) -> Iterator[Motion]:
     place = "" if case.place == REST else f"  {case.place}"
     label = to_typography(f"{case.kind}  × {format_value(case.factor, '1', 4)}{place}")
     name = "buckling" if number == 0 else f"buckling {number + 1}"
@@ -152,10 +157,10 @@ def _modes_there(still: StageData, path: LoadPath) -> Iterator[Motion]:
     kept = np.flatnonzero(np.nan_to_num(found.values) > 0.0)[:_MODES]
     frequencies = np.sqrt(found.values[kept]) / (2.0 * np.pi)
     moved = mode_motions(last, found.shapes[:, kept])
-    yield from _about(still, last, moved, _labels(frequencies, _told(path, int(stable[-1]))))
+    yield from _about(still, last, moved, _labels(frequencies, _point_text(path, int(stable[-1]))))
 
 
-def _told(path: LoadPath, point: int) -> str:
+def _point_text(path: LoadPath, point: int) -> str:
     """A point of a path as text."""
     channel = next((each.unit for each in path.state.model.inputs if each.name == path.drive), None)
     unit = channel or ("rad" if path.drive.rpartition(".")[2].startswith("r") else "m")

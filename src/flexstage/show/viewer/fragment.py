@@ -21,8 +21,8 @@ def element(key: str, *, motion: str = "", instead: str = "") -> str:
     >>> element("stage", motion="mode 1", instead="<p>a picture</p>")
     '<div data-flexstage="stage" data-motion="mode 1"><p>a picture</p></div>'
     """
-    wanted = f' data-motion="{escape(motion)}"' if motion else ""
-    return f'<div data-flexstage="{escape(key)}"{wanted}>{instead}</div>'
+    attribute = f' data-motion="{escape(motion)}"' if motion else ""
+    return f'<div data-flexstage="{escape(key)}"{attribute}>{instead}</div>'
 
 
 def data_script(key: str, data: StageData) -> str:

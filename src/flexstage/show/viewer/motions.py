@@ -150,13 +150,13 @@ def body_twists(
     ([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], 1.0)
     """
     known = {channel.name: index for index, channel in enumerate(model.outputs)}
-    seen = first_design(model.output, 2) @ shape
-    seen = seen if inputs is None else seen + first_design(model.feedthrough, 2) @ inputs
+    outputs = first_design(model.output, 2) @ shape
+    outputs = outputs if inputs is None else outputs + first_design(model.feedthrough, 2) @ inputs
     result: dict[str, Array] = {}
     for body in bodies:
         names = [f"{body}.{component}" for component in COMPONENTS]
         if all(name in known for name in names):
-            result[body] = seen[[known[name] for name in names]]
+            result[body] = outputs[[known[name] for name in names]]
         elif kinematics is not None and names[0] in kinematics.body_coordinates and len(shape) == kinematics.mobility:
             rows = [kinematics.body_coordinates.index(name) for name in names]
             result[body] = first_design(kinematics.bodies, 2)[rows] @ shape

@@ -53,12 +53,12 @@ class Describer:
 
     def thing(self, name: str, kind: Kind, first: int, second: int) -> Thing:
         """The entry of that name in scene and description, and the numbers of the bodies that it joins."""
-        what, address, facts = self._said(name)
+        what, address, facts = self._description(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
         return Thing(name, kind, (first, second), what, unit if unit in self._copies else "", address, line, facts)
 
-    def _said(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
+    def _description(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
         """Its kind, address and facts."""
         if (link := self._links.get(name) or self._links.get(name.removesuffix(_FOOT))) is not None:
             return "ground" if name.endswith(_FOOT) else kind_name(link.part), self._link_address(link), self._link_facts(link)

@@ -115,20 +115,20 @@ def _material(mechanism: Mechanism, name: str | None) -> str:
     return name
 
 
-def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:
+def _contents(mechanism: Mechanism, targets: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:
     """The requested files, with their options, one after the other."""
     require_solver()
     stage, fineness = with_drawn_parts(mechanism), Fineness(order=order)
-    _check_contact(stage, meshed=wanted["--mesh"] is not None or wanted["--gltf"] is not None)
-    if (path := wanted["--output"]) is not None:
+    _check_contact(stage, meshed=targets["--mesh"] is not None or targets["--gltf"] is not None)
+    if (path := targets["--output"]) is not None:
         yield path, "--output", step_apart(stage)
-    if (path := wanted["--mesh"]) is not None:
+    if (path := targets["--mesh"]) is not None:
         from flexstage.solid.exchange.vtu import stage_mesh, vtu  # needs a package of the extra `solid`
 
         with progress_bar() as shown:
             mesh = stage_mesh(stage, fineness, progress=shown.step)
         yield path, "--mesh", vtu(mesh)
-    if (path := wanted["--gltf"]) is not None:
+    if (path := targets["--gltf"]) is not None:
         yield path, "--gltf", _moving_parts(stage, fineness, modes)
 
 

@@ -135,12 +135,12 @@ def solid(
 
     What was reduced once is kept and not computed again.
     """
-    asked = options.resolution
+    resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
         ways = options.ways(shown, pool)
         if scope is Scope.STAGE:
             require_standing(mechanism)
-        found = _STUDIES[scope](mechanism, asked, ways)
+        found = _STUDIES[scope](mechanism, resolution, ways)
     return CommandResult(
         mechanism,
         lambda: SideBySide(({"what": scope.value}, *found.results)),
@@ -161,16 +161,16 @@ def verify(
     Hinges, units and the whole stage: the paper's springs, the lumped model, the lumped model with calibrated hinges, and FEA with its
     own error. Rows that calibrated parts touch are not independent of FEA.
     """
-    asked = options.resolution
+    resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
         ways = options.ways(shown, pool)
         require_standing(mechanism)
-        found = _verify(mechanism, asked, ways)
+        found = _verify(mechanism, resolution, ways)
     solved = (("units", found.units), ("stage", found.stage))
     warnings = (
         *free_end_warnings(mechanism),
         *_inexact_hinges(found.hinges),
-        *(warning for name, each in solved if each is not None for warning in _accuracy_warnings(name, each, asked)),
+        *(warning for name, each in solved if each is not None for warning in _accuracy_warnings(name, each, resolution)),
     )
 
     def page() -> str:
@@ -185,17 +185,17 @@ def verify(
     return CommandResult(mechanism, lambda: found, lambda: _verification_tables(found), page, warnings=warnings)
 
 
-def _verify(mechanism: Mechanism, asked: Resolution, ways: Ways) -> verification.Verification:
+def _verify(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> verification.Verification:
     """The verification; prints its cost before the computation, and each verdict after it."""
-    todo = verification_plan(mechanism, asked, ways)
+    todo = verification_plan(mechanism, resolution, ways)
     print_note(str(todo))
     work_ahead(todo, ways)
     return verification.verify(
-        mechanism, asked, solids(ways), hinges(asked.accuracy, asked.order, ways), _tell_verdicts if todo.jobs else None
+        mechanism, resolution, solids(ways), hinges(resolution.accuracy, resolution.order, ways), _print_verdicts if todo.jobs else None
     )
 
 
-def _tell_verdicts(rows: tuple[verification.Row, ...]) -> None:
+def _print_verdicts(rows: tuple[verification.Row, ...]) -> None:
     for name, group in verification.groups(rows).items():
         print_note(f"{name}: {verification.verdict(group)}")
 
@@ -211,11 +211,11 @@ def calibrate(
 
     The lumped model of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
     """
-    asked = options.resolution
+    resolution = options.resolution
     text = read_text(design)
     mechanism = loads(text, where=str(design))
     with progress_bar() as shown:
-        found = calibration.calibrate(text, hinges(asked.accuracy, asked.order, options.ways(shown)), where=str(design))
+        found = calibration.calibrate(text, hinges(resolution.accuracy, resolution.order, options.ways(shown)), where=str(design))
     save(output, found.text, "--output")
     warnings, tables = _inexact_hinges(found.hinges), [calibration_table(found)]
     return CommandResult(mechanism, lambda: found, lambda: tables, warnings=warnings)
@@ -231,8 +231,8 @@ def _size(memory: str | None) -> float | None:
     return size
 
 
-def _hinge_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
-    found = solid_hinges(mechanism, hinges(asked.accuracy, asked.order, ways))
+def _hinge_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Result:
+    found = solid_hinges(mechanism, hinges(resolution.accuracy, resolution.order, ways))
     warnings = _inexact_hinges(found)
     return _Result(
         said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them below the required accuracy.", not warnings),
@@ -243,12 +243,12 @@ def _hinge_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result
     )
 
 
-def _unit_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
+def _unit_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Result:
     alone = units_alone(mechanism)
-    todo = reduction_plan(alone, asked, ways)
+    todo = reduction_plan(alone, resolution, ways)
     bare = bool(todo.jobs)
-    work_ahead(reduction_plan(alone, asked, ways, bare=True) if bare else todo, ways)
-    found = verification.units_solid(mechanism, asked, solids(ways), bare=bare)
+    work_ahead(reduction_plan(alone, resolution, ways, bare=True) if bare else todo, ways)
+    found = verification.units_solid(mechanism, resolution, solids(ways), bare=bare)
 
     def tables() -> Iterator[Table | None]:
         yield solid_unit_table(found)
@@ -257,17 +257,17 @@ def _unit_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
             yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
 
     return _Result(
-        said=_accuracy_headline(found, asked),
+        said=_accuracy_headline(found, resolution),
         results=(found, {"units": found.result}),
         tables=tables,
         sections=lambda: iter([pages.unit_section(found)]),
-        warnings=_accuracy_warnings("units", found, asked),
+        warnings=_accuracy_warnings("units", found, resolution),
     )
 
 
-def _stage_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result:
-    work_ahead(reduction_plan([with_drawn_parts(mechanism)], asked, ways), ways)
-    found = verification.stage_solid(mechanism, asked, solids(ways))
+def _stage_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Result:
+    work_ahead(reduction_plan([with_drawn_parts(mechanism)], resolution, ways), ways)
+    found = verification.stage_solid(mechanism, resolution, solids(ways))
     stage = found.result
 
     def tables() -> Iterator[Table | None]:
@@ -283,11 +283,11 @@ def _stage_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result
         return pages.paired_with_theory(mechanism, stage)
 
     return _Result(
-        said=_accuracy_headline(found, asked),
+        said=_accuracy_headline(found, resolution),
         results=(found, stage),
         tables=tables,
         sections=lambda: iter([pages.stage_solid_section(found), paired()[1]]),
-        warnings=_accuracy_warnings("stage", found, asked),
+        warnings=_accuracy_warnings("stage", found, resolution),
         motions=lambda: pages.solid_motions(mechanism, stage, paired()[0]),
     )
 
@@ -318,14 +318,14 @@ def _inexact_hinges(hinges: Mapping[str, SolidHinge]) -> tuple[Finding, ...]:
     return tuple(Finding(name, each.what, each.advice) for name, each in found if each is not None)
 
 
-def _accuracy_warnings(what: str, found: Converged[Any], asked: Resolution) -> tuple[Finding, ...]:
+def _accuracy_warnings(what: str, found: Converged[Any], resolution: Resolution) -> tuple[Finding, ...]:
     """A warning if the estimated error exceeds the required accuracy; else a note."""
     text = _accuracy_text(found)
-    if found.error <= asked.accuracy:
+    if found.error <= resolution.accuracy:
         print_note(f"{what}: {text}")
         return ()
-    more = found.stopped or (f"Use --order {found.order + 1}" if asked.order is not None else "This is the highest order")
-    return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % required", more.rstrip(".")),)
+    more = found.stopped or (f"Use --order {found.order + 1}" if resolution.order is not None else "This is the highest order")
+    return (Finding(what, f"{text}; {100.0 * resolution.accuracy:.2g} % required", more.rstrip(".")),)
 
 
 def _accuracy_text(found: Converged[Any]) -> str:
@@ -337,10 +337,10 @@ def _accuracy_text(found: Converged[Any]) -> str:
     return f"the estimated error of finite elements is {size} at order {found.order}{more}"
 
 
-def _accuracy_headline(found: Converged[Any], asked: Resolution) -> Headline:
+def _accuracy_headline(found: Converged[Any], resolution: Resolution) -> Headline:
     """Accuracy of a result, compared with the required accuracy."""
-    said = _accuracy_text(found)
-    return page.Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % required.", found.error <= asked.accuracy)
+    text = _accuracy_text(found)
+    return page.Headline(f"{text[0].upper()}{text[1:]}; {100.0 * resolution.accuracy:.2g} % required.", found.error <= resolution.accuracy)
 
 
 def _verification_tables(found: verification.Verification) -> Iterator[Table | str | None]:

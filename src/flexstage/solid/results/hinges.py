@@ -113,10 +113,10 @@ class SolidHinge(DistinctHinge, InNotebook):
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS) -> Hinges:
     """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, in parallel, by `ways`."""
-    asked = accuracy_of(accuracy, order)
+    required = accuracy_of(accuracy, order)
 
     def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
-        return hinges_from_cache(forms, asked, ways)
+        return hinges_from_cache(forms, required, ways)
 
     return compute
 

@@ -64,8 +64,8 @@ def _from_cache(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> Fea
         wholes.append((job.component, element))
     parts = as_joined(own, wholes)
     order = reduction.fineness.order
-    said = f"solid model of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes a component"
-    model = linear_model(shape, expand(shape), parts, said)
+    provenance = f"solid model of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes a component"
+    model = linear_model(shape, expand(shape), parts, provenance)
     return FeaModes(platform_modes(mechanism, model), model, order) if parts else None
 
 

@@ -136,8 +136,8 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
     order = reduction.fineness.order
     orders = f"{order} and {order + 1}" if reduction.raised else f"{order}"
     bare = f", none in those of order {order + 1}" if reduction.raised and reduction.static else ""
-    said = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes a component{bare}"
-    return SolidRead(shape, linear_model(shape, assembly, parts, said), place_parts(assembly, parts))
+    provenance = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes a component{bare}"
+    return SolidRead(shape, linear_model(shape, assembly, parts, provenance), place_parts(assembly, parts))
 
 
 def coarsen(reduction: Reduction) -> Reduction:

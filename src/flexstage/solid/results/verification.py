@@ -198,13 +198,13 @@ def verify(
             work_ahead(verification_plan(mechanism, asked, ways, Accuracy()), ways)
             return verify(mechanism, asked, solids(ways), hinges(ways=ways), tell)
     missing = dict[str, str]()
-    told = tell or _nobody
+    notify = tell or _ignore
     found = solid_hinges(mechanism, compute)
     of_hinges = tuple(hinge_rows(mechanism, found))
-    told(of_hinges)
+    notify(of_hinges)
     stage = stage_solid(mechanism, asked, reduce)
     of_stage = tuple(stage_rows(mechanism, substitute_parts(mechanism, found), stage))
-    told(of_stage)
+    notify(of_stage)
     try:
         alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None
     except DesignError as error:
@@ -212,11 +212,11 @@ def verify(
     if alone is None:
         missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
     of_units = () if alone is None else tuple(unit_rows(mechanism, units_with_calibrated_hinges(mechanism, compute), alone))
-    told(of_units)
+    notify(of_units)
     return Verification(mechanism, (*of_hinges, *of_units, *of_stage), found, alone, stage, missing)
 
 
-def _nobody(_rows: tuple[Row, ...]) -> None:
+def _ignore(_rows: tuple[Row, ...]) -> None:
     """Ignore the rows."""
 
 
@@ -415,8 +415,8 @@ def verdict(rows: tuple[Row, ...]) -> str:
     judged = [row for row in rows if row not in open_rows]
     if not judged:
         return f"No verdict. {_reasons(open_rows)}"
-    said = _verdict_of_known(tuple(judged))
-    return f"{said} No verdict on {len(open_rows)} of {len(rows)} figures. {_reasons(open_rows)}" if open_rows else said
+    text = _verdict_of_known(tuple(judged))
+    return f"{text} No verdict on {len(open_rows)} of {len(rows)} figures. {_reasons(open_rows)}" if open_rows else text
 
 
 def _reasons(rows: Iterable[Row]) -> str:
@@ -467,8 +467,8 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
     known = departures(rows)
     if any(row.trust is Trust.UNCLEAR for row in rows):
-        said = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: increase the accuracy."
-        return f"{known[:1].upper()}{known[1:]}. {said}" if known else said
+        text = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: increase the accuracy."
+        return f"{known[:1].upper()}{known[1:]}. {text}" if known else text
     better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
     if not better:
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."

@@ -140,9 +140,9 @@ def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = Ma
         twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
         frequency = float(moving.modes.frequencies[index])
         pair = theory.get(index)
-        told = "" if pair is None else f"; theory {number(pair.frequency)} Hz, assurance {pair.assurance:.3f}"
+        theory_text = "" if pair is None else f"; theory {number(pair.frequency)} Hz, assurance {pair.assurance:.3f}"
         label = f"FEA {index + 1}  {number(frequency)} Hz  {moving.modes.names[index]}"
-        found.append(Motion(Group.MODE, f"fea {index + 1}", label, bones.at_origin(twists), f"by finite elements{told}", frequency))
+        found.append(Motion(Group.MODE, f"fea {index + 1}", label, bones.at_origin(twists), f"by finite elements{theory_text}", frequency))
     return tuple(found)
 
 

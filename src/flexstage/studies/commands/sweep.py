@@ -37,17 +37,17 @@ def sweep(
 
     Interrupted at any moment, --resume goes on without loss or repetition.
     """
-    asked = load_study(study)
+    definition = load_study(study)
     with _resumable(output), progress_bar() as shown:
         results = run_sweep(
-            asked,
+            definition,
             output,
             Run(workers, resume),
             lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1)),
         )
-    found = Sweep(asked, results, effects(results, asked.plan))
-    page, warnings = partial(sweep_report, found), loaded_findings(asked)
-    return CommandResult(asked.design, lambda: found, lambda: study_tables(found), page, Model.LUMPED, warnings)
+    found = Sweep(definition, results, effects(results, definition.plan))
+    page, warnings = partial(sweep_report, found), loaded_findings(definition)
+    return CommandResult(definition.design, lambda: found, lambda: study_tables(found), page, Model.LUMPED, warnings)
 
 
 @contextmanager

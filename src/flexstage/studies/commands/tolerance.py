@@ -35,10 +35,10 @@ def tolerance(
     """
     if resume and output is None:
         raise refuse("--resume", "no results file is named", "Name it with --output")
-    asked = load_tolerance(study)
+    definition = load_tolerance(study)
     with progress_bar() as shown:
         found = run_tolerance(
-            asked,
+            definition,
             output,
             Run(workers, resume),
             lambda done, of: shown.share(f"{done} of {of} samples", done / max(of, 1)),

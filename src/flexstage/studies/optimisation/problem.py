@@ -51,5 +51,5 @@ def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, 
     ['stroke.x', 'frequency.platform.1', 'safety']
     """
     own = requirements(study.design) if definition.requirements else ()
-    said = {(each.key, each.point, each.sense) for each in study.limits}
-    return (*study.limits, *(each for each in own if (each.key, each.point, each.sense) not in said))
+    limited = {(each.key, each.point, each.sense) for each in study.limits}
+    return (*study.limits, *(each for each in own if (each.key, each.point, each.sense) not in limited))

@@ -95,9 +95,9 @@ def setting(study: Study, definition: OptimisationProblem) -> Setting:
 def _measure_findings(study: Study, objectives: tuple[Objective, ...], kept: tuple[Requirement, ...]) -> Iterator[Finding]:
     """Measures that this stage does not have."""
     bench = bench_of(require_valid(study.design))
-    asked: list[tuple[str, Measure]] = [(f"responses.{each.name}", each.measure) for each in objectives]
-    asked += [(f"limits.{each.key}", each) for each in kept]
-    for where, each in asked:
+    measures: list[tuple[str, Measure]] = [(f"responses.{each.name}", each.measure) for each in objectives]
+    measures += [(f"limits.{each.key}", each) for each in kept]
+    for where, each in measures:
         value = value_or_reason(bench, each)
         if isinstance(value, str):
             yield Finding(where, value, "Use measures of this stage")

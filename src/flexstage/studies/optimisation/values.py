@@ -147,30 +147,30 @@ class Values:
             bench = Bench(stepped, self._command)
             modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
             columns: list[Sequence[Scalars | Numbered]] = []
-            for asked in self.measures:
-                if asked.kind in _SPECTRAL:
-                    columns.append([self._nth_frequency(own, asked) for own in modes])
-                elif not asked.kind.analytic:
-                    columns.append(self._central_differences(asked, shares, slopes=slopes))
+            for measure in self.measures:
+                if measure.kind in _SPECTRAL:
+                    columns.append([self._nth_frequency(own, measure) for own in modes])
+                elif not measure.kind.analytic:
+                    columns.append(self._central_differences(measure, shares, slopes=slopes))
                 else:
-                    columns.append(_scalars(asked.kind.pieces(bench, asked), _extreme(asked), (designs, each), slopes=slopes))
+                    columns.append(_scalars(measure.kind.pieces(bench, measure), _extreme(measure), (designs, each), slopes=slopes))
         return [Point(shares[design], tuple(column[design] for column in columns)) for design in range(designs)]
 
-    def _nth_frequency(self, own: tuple[Spectrum, ...], asked: Measure) -> Numbered:
-        platform = asked.kind is platform_frequency
-        return Numbered(own[[modes.platform for modes in self._modes].index(platform)], int(asked.name))
+    def _nth_frequency(self, own: tuple[Spectrum, ...], measure: Measure) -> Numbered:
+        platform = measure.kind is platform_frequency
+        return Numbered(own[[modes.platform for modes in self._modes].index(platform)], int(measure.name))
 
-    def _central_differences(self, asked: Measure, shares: Array, *, slopes: bool) -> list[Scalars]:
+    def _central_differences(self, measure: Measure, shares: Array, *, slopes: bool) -> list[Scalars]:
         designs, variables = shares.shape
         moves = np.zeros((1, variables))
         if slopes:
             moves = _APART * np.concatenate([moves, np.eye(variables), -np.eye(variables)])
         rows = (shares[:, None] + moves[None]).reshape(-1, variables)
-        found = asked.kind.pieces(bench_of(self._design(rows)), asked)
+        found = measure.kind.pieces(bench_of(self._design(rows)), measure)
         values = np.broadcast_to(found, (len(rows), found.shape[-1])).reshape(designs, len(moves), -1)
         ahead, back = values[:, 1 : variables + 1], values[:, variables + 1 :]
         gradient = (ahead - back) / (2.0 * _APART) if slopes else np.zeros((designs, 0, values.shape[-1]))
-        return [Scalars(own[0], change.T, _extreme(asked)) for own, change in zip(values, gradient, strict=True)]
+        return [Scalars(own[0], change.T, _extreme(measure)) for own, change in zip(values, gradient, strict=True)]
 
 
 def values_of(study: Study, shares: Array) -> Array:
@@ -188,9 +188,9 @@ def values_of(study: Study, shares: Array) -> Array:
     return np.array(found)
 
 
-def _extreme(asked: Measure) -> Extreme:
+def _extreme(measure: Measure) -> Extreme:
     """The extreme of a measure's pieces."""
-    return asked.kind.extreme or Extreme.LEAST
+    return measure.kind.extreme or Extreme.LEAST
 
 
 def _scalars(values: Array, extreme: Extreme, shape: tuple[int, int], *, slopes: bool) -> list[Scalars]:

@@ -78,8 +78,8 @@ class Study:
     @property
     def columns(self) -> Mapping[str, Measure]:
         """Computed measures of each design, by name: the responses, and the measures of limits."""
-        asked = {(each.key, each.point) for each in self.responses.values()}
-        further = [each for each in self.limits if (each.key, each.point) not in asked]
+        requested = {(each.key, each.point) for each in self.responses.values()}
+        further = [each for each in self.limits if (each.key, each.point) not in requested]
         return {**self.responses, **{each.key if each.key not in self.responses else f"limit {each.key}": each for each in further}}
 
     @property
@@ -160,9 +160,9 @@ class Study:
         return np.all([np.all(np.isfinite(responses), axis=1), *verdicts], axis=0)
 
 
-def _offer(asked: Measure) -> str:
+def _offer(measure: Measure) -> str:
     """The package and version of a measure, if it is from another package."""
-    offer = MEASURES.offer(asked.kind.form)
+    offer = MEASURES.offer(measure.kind.form)
     return f", of {offer}" if offer else ""
 
 

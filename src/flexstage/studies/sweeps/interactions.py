@@ -55,11 +55,11 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
     if width < 2 or count < 2:
         return result
     bins = [np.unique(column, return_inverse=True)[1] if grid else rank_bins(column, width) for column in at.T]
-    rest = values - values.mean(axis=0) - sum(effect[group] for effect, group in zip(single_effects(bins, values), bins, strict=True))
-    total, left = count * variance(values), np.sum(rest**2, axis=0)
+    residual = values - values.mean(axis=0) - sum(effect[group] for effect, group in zip(single_effects(bins, values), bins, strict=True))
+    total, left = count * variance(values), np.sum(residual**2, axis=0)
     singles = sum(int(group.max()) for group in bins) + 1
     for first, second in combinations(range(dimensions), 2):
-        explained = _explained_sum(bins[first], bins[second], rest)
+        explained = _explained_sum(bins[first], bins[second], residual)
         degrees = int(bins[first].max()) * int(bins[second].max())
         spare = count - singles - degrees
         chance = 0.0 if grid else degrees * (left - explained) / spare if spare > 0 else np.nan
@@ -111,11 +111,11 @@ def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
     return [part - part[group].mean(axis=0) for part, group in zip(parts, bins, strict=True)]
 
 
-def _explained_sum(first: Array, second: Array, rest: Array) -> Array:
+def _explained_sum(first: Array, second: Array, residual: Array) -> Array:
     """Sum of squares (r,) of the cells' means."""
     cells = first * (int(second.max()) + 1) + second
     counts = np.bincount(cells)
-    sums = np.stack([np.bincount(cells, column, len(counts)) for column in rest.T], axis=-1)
+    sums = np.stack([np.bincount(cells, column, len(counts)) for column in residual.T], axis=-1)
     return np.sum(np.divide(sums**2, counts[:, None], out=np.zeros_like(sums), where=counts[:, None] > 0), axis=0)
 
 

@@ -57,8 +57,8 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     if least >= DOUBTFUL:
         return ()
     where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
-    told = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable: no results"
-    what = f"weight, payloads and forces reduce stiffness: smallest load factor {least:.3g} ({where}); {told}"
+    effect = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable: no results"
+    what = f"weight, payloads and forces reduce stiffness: smallest load factor {least:.3g} ({where}); {effect}"
     return (Finding("variables", what, 'Add to [limits] e.g. buckling = "at least 20"'),)
 
 

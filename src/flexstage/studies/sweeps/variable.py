@@ -123,8 +123,8 @@ def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns
     start = result = _draw(mechanism, [move for move in moves if move[1].variant is not None])
     written = [move for move in moves if move[1].variant is None]
     for address, variable, value in sorted(written, key=lambda move: override_level(mechanism, move[0])):
-        wanted = get(start, address) * value if variable.relative else value
-        result = set_value(result, address, wanted)
+        required = get(start, address) * value if variable.relative else value
+        result = set_value(result, address, required)
     return result
 
 

@@ -214,9 +214,9 @@ def specification_schema() -> dict[str, Any]:
 def _findings(spec: Specification) -> Iterator[Finding]:
     """Contradictions within a specification."""
     if not spec.displacements:
-        yield Finding("motion", "no displacement is required", 'Write for example motion = { x = "50 um" }')
+        yield Finding("motion", "no displacement is required", 'Use e.g. motion = { x = "50 um" }')
     if not any(key in FREQUENCY_KEYS or key.startswith("stiffness") for key in spec.requirements):
-        yield Finding("requirements", "no frequency or stiffness is required", 'Write for example frequency = "at least 100 Hz"')
+        yield Finding("requirements", "no frequency or stiffness is required", 'Use e.g. frequency = "at least 100 Hz"')
     for key in FREQUENCY_KEYS:
         try:
             spec.frequency_limit(key)
@@ -225,7 +225,7 @@ def _findings(spec: Specification) -> Iterator[Finding]:
     yield from _size_findings(spec)
     if any(axis.startswith("r") for axis in spec.displacements) and spec.payload.size is None and spec.payload.inertia is None:
         what = "a rotation is required, and the payload has neither size nor inertia"
-        yield Finding("payload", what, 'Write for example size = ["30 mm", "30 mm", "5 mm"]')
+        yield Finding("payload", what, 'Use e.g. size = ["30 mm", "30 mm", "5 mm"]')
     if spec.goals.maximise is not None and spec.goals.minimise is not None:
         yield Finding("goals", "there are two goals", "Keep one, and set a requirement for the other")
 

@@ -27,7 +27,7 @@ def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tupl
     >>> [each.what for each in bound_findings(parallelogram(), [Target("parts.leaf.thickness", 1e-3, ((0, 1.0),))], (wide,))]
     ['parts.leaf.thickness is 1 mm, and deviations reach 1.5 mm (5 standard deviations): it would be -0.5 mm, and must be greater than 0']
     """
-    told: set[tuple[str, ...]] = set()
+    reported: set[tuple[str, ...]] = set()
     for target in reached:
         node = locate(design, target.address).node
         if not isinstance(node, NumberNode) or node.bound is None:
@@ -37,9 +37,9 @@ def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tupl
         if bound.low < target.nominal - reach and target.nominal + reach < bound.high:
             continue
         owners = tuple(dict.fromkeys(variables[number].scatter for number, _ in target.factors))
-        if owners in told:
+        if owners in reported:
             continue
-        told.add(owners)
+        reported.add(owners)
         worst = target.nominal - reach if target.nominal - reach <= bound.low else target.nominal + reach
         quantity = quantity_of(design, target.address)
         is_, far, there = (show(value, quantity, digits=4) for value in (target.nominal, reach, worst))

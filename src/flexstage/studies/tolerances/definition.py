@@ -142,9 +142,9 @@ class Tolerance(Study):
 
     def measure_on(self, bench: Bench, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
         """The requested columns of the study, from a bench; the others are left out."""
-        asked = any(isinstance(each, PoseMeasure) for each in wanted)
+        requested = any(isinstance(each, PoseMeasure) for each in wanted)
         found = {}
-        if self.commanded is not None and asked:
+        if self.commanded is not None and requested:
             found = dict(zip(pose_measures(self.commanded), poses(bench, self.commanded), strict=True))
         return tuple(
             None if each is None else found[each.key] if isinstance(each, PoseMeasure) else value_or_reason(bench, each) for each in wanted

@@ -177,28 +177,28 @@ def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings:
 
 def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
     """The specified distribution."""
-    given = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
-    if len(given) != 1 and (given or table.interval is None):
-        what = "must be normal or uniform, not both" if given else "deviation missing"
+    specified = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
+    if len(specified) != 1 and (specified or table.interval is None):
+        what = "must be normal or uniform, not both" if specified else "deviation missing"
         advice = 'Use normal = "2 um", a standard deviation, uniform = "5 um", a half width, or interval = ["-1 um", "5 um"]'
         findings.append(Finding(f"{where}.normal", what, advice))
-    if table.within is not None and given == [Shape.UNIFORM]:
+    if table.within is not None and specified == [Shape.UNIFORM]:
         findings.append(Finding(f"{where}.within", "a uniform distribution is bounded", "Leave it out"))
     if table.interval is not None and (table.uniform is not None or table.within is not None):
         findings.append(Finding(f"{where}.interval", "limits given twice", "Leave out uniform or within"))
-    return given[0] if given else Shape.UNIFORM if table.interval else Shape.NORMAL
+    return specified[0] if specified else Shape.UNIFORM if table.interval else Shape.NORMAL
 
 
 def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quantity) -> tuple[Distribution, bool]:
     """The distribution, and whether its numbers are shares of the design's value."""
     low, high = table.interval or (None, None)
     raw = {"normal": table.normal, "uniform": table.uniform, "within": table.within, "interval.0": low, "interval.1": high}
-    given = {key: text for key, text in raw.items() if text is not None}
-    if len({is_share(text) for text in given.values()}) > 1:
+    specified = {key: text for key, text in raw.items() if text is not None}
+    if len({is_share(text) for text in specified.values()}) > 1:
         raise refuse(f"{where}.within", "one is relative (%), the other not", "Use % for both or neither")
     sizes: dict[str, float] = {}
     findings: list[Finding] = []
-    for key, text in given.items():
+    for key, text in specified.items():
         wanted = RATIO if is_share(text) else quantity
         try:
             sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
@@ -209,7 +209,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         except DesignError as error:
             findings += error.findings
     require(findings)
-    relative = is_share(next(iter(given.values())))
+    relative = is_share(next(iter(specified.values())))
     if table.interval is None:
         return Distribution(shape, sizes[shape.value], sizes.get("within")), relative
     low, high = sizes["interval.0"], sizes["interval.1"]

@@ -103,5 +103,5 @@ def tolerance(
             return tolerance(study, place / "copies.h5", how, progress)
     results = sweep(study, path, how, progress)
     found = slopes(study)
-    said = summary(study, results, found)
-    return Toleranced(study, results, found, said, allowance(study, results, found, said))
+    statistics = summary(study, results, found)
+    return Toleranced(study, results, found, statistics, allowance(study, results, found, statistics))

@@ -67,11 +67,11 @@ def _numbers(study: Tolerance, values: Array) -> Array:
     return np.stack(rows, axis=-1)
 
 
-def _mode(bench: Bench, asked: Measure) -> tuple[float, Eigen]:
+def _mode(bench: Bench, measure: Measure) -> tuple[float, Eigen]:
     """The requested frequency, and its equal modes."""
     modes = bench.modes
-    index = int(asked.name) - 1
-    place = modes.platform[index] if asked.kind is platform_frequency else index
+    index = int(measure.name) - 1
+    place = modes.platform[index] if measure.kind is platform_frequency else index
     value = modes.frequencies[place]
     group = np.flatnonzero(np.abs(modes.frequencies - value) <= _GAP * value)
     return float(value), Eigen((2.0 * np.pi * modes.frequencies[group]) ** 2, modes.shapes[:, group])
@@ -97,8 +97,8 @@ def _smooth(study: Tolerance, values: Array, gradient: Array, size: Array) -> Ar
     way = np.random.default_rng(study.plan.seed).standard_normal((_DIRECTIONS, len(size))) * size * _NEAR
     there = _numbers(study, np.concatenate([way, -way])) - values
     odd, even = 0.5 * (there[:_DIRECTIONS] - there[_DIRECTIONS:]), 0.5 * (there[:_DIRECTIONS] + there[_DIRECTIONS:])
-    told = way @ gradient.T
+    predicted = way @ gradient.T
     scale = np.sqrt(np.mean(odd**2, axis=0))
     noise = 1e-10 * np.abs(values) + 1e-300
-    wrong = np.sqrt(np.mean(even**2 + (odd - told) ** 2, axis=0))
+    wrong = np.sqrt(np.mean(even**2 + (odd - predicted) ** 2, axis=0))
     return np.isfinite(wrong) & (wrong <= _EVEN * scale + noise)

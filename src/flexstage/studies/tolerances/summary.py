@@ -260,8 +260,8 @@ def _kinds(study: Tolerance) -> tuple[str, ...]:
 
 
 def _crosstalk(study: Tolerance, values: Array, slope: Slopes, kind: str) -> Crosstalk:
-    asked = study.commanded
-    coordinates = COMPONENTS if kind == HELD or asked is None else asked.coordinates
+    commanded = study.commanded
+    coordinates = COMPONENTS if kind == HELD or commanded is None else commanded.coordinates
     names = list(study.columns)
     places = [[names.index(f"{kind}.{row}.{column}") for column in coordinates] for row in COMPONENTS]
     own = np.array([[float(row == column) for column in coordinates] for row in COMPONENTS])
@@ -270,7 +270,7 @@ def _crosstalk(study: Tolerance, values: Array, slope: Slopes, kind: str) -> Cro
     found = len(errors) > 0
     return Crosstalk(
         kind=kind,
-        point=asked.point if asked is not None else "",
+        point=commanded.point if commanded is not None else "",
         coordinates=tuple(coordinates),
         nominal=slope.values[np.array(places)] - own,
         mean=errors.mean(axis=0) if found else empty,

@@ -60,8 +60,8 @@ def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
     elif away <= TOUCHING * MILLIMETRES:
         yield f"it touches {second.name}, which no joint connects it to", _advice(first, second)
     else:
-        wanted = distance_text(clearance * MILLIMETRES)
-        yield f"it is {distance_text(away)} from {second.name}, less than the clearance of {wanted}", _advice(first, second)
+        required = distance_text(clearance * MILLIMETRES)
+        yield f"it is {distance_text(away)} from {second.name}, less than the clearance of {required}", _advice(first, second)
 
 
 def _advice(first: Piece, second: Piece) -> str:

@@ -148,19 +148,19 @@ def hinge_compliance(
     >>> round(float(bar.compliance[0, 0]) * 200e9 * 1e-3 * 2e-3 / 0.01, 1), bar.stub, bar.finding is None
     (1.0, 0.0, True)
     """
-    asked = accuracy or Accuracy()
+    required = accuracy or Accuracy()
     require(_refusals(part))
     own = medium(material)
     subject = _Subject.of(part, own, stub, roots or own_roots(part))
     taken, blunt = subject.stubs, subject.blunting_error
     found: list[Array] = []
     last = None
-    for last in _solves(subject, asked, told):
+    for last in _solves(subject, required, told):
         found.append(_symmetrise(np.linalg.inv(last.stiffness)) - taken)
-        if blunt + _error(part, found) <= asked.error:
+        if blunt + _error(part, found) <= required.error:
             break
     if last is None:
-        what = f"its coarsest mesh has more than the {asked.freedoms} DOFs allowed"
+        what = f"its coarsest mesh has more than the {required.freedoms} DOFs allowed"
         raise refuse(_label(part), what, "Use --order 3, which begins with order two, or in Python increase freedoms of its Accuracy")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
@@ -173,7 +173,7 @@ def hinge_compliance(
         freedoms=last.freedoms,
         elements=last.elements,
         order=last.order,
-        finding=None if error <= asked.error else _not_reached(part, error, asked),
+        finding=None if error <= required.error else _not_reached(part, error, required),
     )
 
 
@@ -205,26 +205,26 @@ def _label(part: Shaped) -> str:
     return f"the {part.kind}"
 
 
-def _solves(subject: _Subject, asked: Accuracy, told: Call) -> Iterator[_Solve]:
+def _solves(subject: _Subject, accuracy: Accuracy, call: Call) -> Iterator[_Solve]:
     """Solves of rising order on one mesh, then of the highest on finer ones, up to the limit of DOFs.
 
     If the lowest order has too many on the usual mesh, as for wide notches, a coarser mesh is used from order two on. DOFs and elements
     are counted for the whole hinge.
     """
-    lowest, highest = asked.orders
-    for refinement in range(asked.meshes):
-        told.report(Stage.MESHING, 0.0)
-        cut = _mesh(subject, asked.shrink**refinement, highest)
+    lowest, highest = accuracy.orders
+    for refinement in range(accuracy.meshes):
+        call.report(Stage.MESHING, 0.0)
+        cut = _mesh(subject, accuracy.shrink**refinement, highest)
         if refinement == 0:
-            if cut.mirrors.copies * _space(subject, cut, min(max(lowest, _TELLING), highest)).size > asked.freedoms:
+            if cut.mirrors.copies * _space(subject, cut, min(max(lowest, _TELLING), highest)).size > accuracy.freedoms:
                 lowest, cut = 2, _mesh(subject, _COARSER, highest)
             mesh = cut.mesh
-            told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
+            call.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
             space = _space(subject, cut, order)
-            if cut.mirrors.copies * space.size > asked.freedoms:
+            if cut.mirrors.copies * space.size > accuracy.freedoms:
                 return
-            told.report(Stage.FACTORISING, 0.0)
+            call.report(Stage.FACTORISING, 0.0)
             yield _Solve(_law(subject.part, space, cut), cut.mirrors.copies * space.size, cut.mirrors.copies * cut.mesh.ne, order)
 
 
@@ -331,11 +331,11 @@ def _require_symmetric(part: Shaped, law: Array) -> None:
         )
 
 
-def _not_reached(part: Shaped, error: float, asked: Accuracy) -> Finding:
+def _not_reached(part: Shaped, error: float, accuracy: Accuracy) -> Finding:
     if not np.isfinite(error):
         return Finding(_label(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _label(part),
-        f"the error of its 6x6 is {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % required, within {asked.freedoms} DOFs",
+        f"the error of its 6x6 is {100.0 * error:.2g} %, {100.0 * accuracy.error:.2g} % required, within {accuracy.freedoms} DOFs",
         "Allow more DOFs, or less accuracy",
     )

@@ -65,7 +65,7 @@ class HingeJob(StoredJob):
             raise DesignError(replace(each, where=each.where.replace(kind, self.name, 1)) for each in error.findings) from None
 
 
-def hinges_from_cache(forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
+def hinges_from_cache(forms: Mapping[str, HingeForm], accuracy: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
     """The 6x6 of hinges by name, from the cache, else computed in separate parallel processes, each stored immediately.
 
     Only missing ones need the solver. Raises `DesignError` with all failures.
@@ -73,17 +73,17 @@ def hinges_from_cache(forms: Mapping[str, HingeForm], asked: Accuracy, ways: Way
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}
     """
-    jobs = hinge_jobs(forms, asked)
+    jobs = hinge_jobs(forms, accuracy)
     found = obtain(jobs, ways)
     return {job.name: found[job.key] for job in jobs}
 
 
-def hinge_jobs(forms: Mapping[str, HingeForm], asked: Accuracy) -> list[HingeJob]:
+def hinge_jobs(forms: Mapping[str, HingeForm], accuracy: Accuracy) -> list[HingeJob]:
     """A job for each hinge."""
-    return [HingeJob(_key(form, asked), name, form, asked) for name, form in forms.items()]
+    return [HingeJob(_key(form, accuracy), name, form, accuracy) for name, form in forms.items()]
 
 
-def _key(form: HingeForm, asked: Accuracy) -> str:
+def _key(form: HingeForm, accuracy: Accuracy) -> str:
     own = medium(form.material)
     stiffness = (own.young, own.poisson, own.tensor)
-    return hashlib.sha256(f"{form_digest(form.part)} {stiffness} {form.roots} {asked}".encode()).hexdigest()[:32]
+    return hashlib.sha256(f"{form_digest(form.part)} {stiffness} {form.roots} {accuracy}".encode()).hexdigest()[:32]

@@ -131,10 +131,10 @@ def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit:
     >>> refusal("half a lever", Counts(1416, 7258, 10580, 4737, sides=2), Fineness(), 24, 0.5e9).what
     'its reduction at order 3 needs about 1.53 GB (79,536 degrees of freedom of one side), and 0.5 GB are available'
     """
-    wanted = needed(counts, fineness.order, columns)
-    if wanted <= limit:
+    required = needed(counts, fineness.order, columns)
+    if required <= limit:
         return None
-    what = f"its reduction at order {fineness.order} needs about {gigabytes(wanted)}"
+    what = f"its reduction at order {fineness.order} needs about {gigabytes(required)}"
     size = f"{freedoms(counts, fineness.order):,.0f} degrees of freedom{' of one side' if counts.sides > 1 else ''}"
     what += f" ({size}), and {gigabytes(limit)} are available"
     smaller = [*_lower_order(counts, fineness, columns, limit), *_larger_elements(counts, fineness, columns, limit)]
@@ -144,18 +144,18 @@ def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit:
 
 def _lower_order(counts: Counts, fineness: Fineness, columns: int, limit: float) -> Iterator[str]:
     for order in range(fineness.order - 1, 1, -1):
-        wanted = needed(counts, order, columns)
-        if wanted <= limit:
-            yield f"order {order}, about {gigabytes(wanted)}"
+        required = needed(counts, order, columns)
+        if required <= limit:
+            yield f"order {order}, about {gigabytes(required)}"
             return
 
 
 def _larger_elements(counts: Counts, fineness: Fineness, columns: int, limit: float) -> Iterator[str]:
     factor = _COARSER
     while factor <= _COARSEST:
-        wanted = needed(counts.coarser(factor), fineness.order, columns)
-        if wanted <= limit:
+        required = needed(counts.coarser(factor), fineness.order, columns)
+        if required <= limit:
             found = replace(fineness, neck=round(fineness.neck * factor, 1), block=round(fineness.block * factor, 1))
-            yield f"larger elements, Fineness(neck={found.neck:g}, block={found.block:g}, order={found.order}), about {gigabytes(wanted)}"
+            yield f"larger elements, Fineness(neck={found.neck:g}, block={found.block:g}, order={found.order}), about {gigabytes(required)}"
             return
         factor *= _COARSER

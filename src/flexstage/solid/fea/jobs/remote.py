@@ -103,7 +103,7 @@ def work_all(
     >>> work_all([], print, Limits())
     """
     with nullcontext(pool) if pool is not None else Pool() as used:
-        run = _Run(tuple(jobs), done, limits, progress or _nobody, used)
+        run = _Run(tuple(jobs), done, limits, progress or _ignore, used)
         try:
             run.finish()
         finally:
@@ -111,7 +111,7 @@ def work_all(
     require(dict.fromkeys(run.findings))
 
 
-def _nobody(_step: Step) -> None:
+def _ignore(_step: Step) -> None:
     """Ignore the progress."""
 
 
@@ -138,12 +138,12 @@ class _Child(Generic[AnyJob]):
     counts: Counts | None = None
     granted: float | None = None
 
-    def note(self, told: Counts | tuple[Stage, float]) -> None:
+    def note(self, report: Counts | tuple[Stage, float]) -> None:
         """Store its report."""
-        if isinstance(told, Counts):
-            self.counts, self.granted = told, None
+        if isinstance(report, Counts):
+            self.counts, self.granted = report, None
         else:
-            (self.stage, self.fraction), self.since = told, time.monotonic()
+            (self.stage, self.fraction), self.since = report, time.monotonic()
 
     @property
     def waits(self) -> bool:
@@ -309,9 +309,9 @@ def _failure(child: _Child[AnyJob], code: int) -> Finding:
     return Finding(child.job.name, f"its process crashed while {doing} ({_reason(code)}){tried}", advice)
 
 
-def _fault(child: _Child[AnyJob], said: str) -> Finding:
+def _fault(child: _Child[AnyJob], message: str) -> Finding:
     advice = "Report this fault of flexstage or its solver with the design; other sizes of elements may avoid it"
-    return Finding(child.job.name, f"its process failed while {child.stage.value} ({said})", advice)
+    return Finding(child.job.name, f"its process failed while {child.stage.value} ({message})", advice)
 
 
 def _reason(code: int) -> str:

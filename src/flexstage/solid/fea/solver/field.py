@@ -521,10 +521,10 @@ class Columns:
         return Columns(self.values[:, columns], self.kinds[columns])
 
 
-def beside(columns: Sequence[Columns]) -> Columns:
+def concatenate(columns: Sequence[Columns]) -> Columns:
     """Concatenate columns.
 
-    >>> beside([Columns.of(np.zeros((3, 2))), Columns.of(np.ones((3, 1)))]).values[0].tolist()
+    >>> concatenate([Columns.of(np.zeros((3, 2))), Columns.of(np.ones((3, 1)))]).values[0].tolist()
     [0.0, 0.0, 1.0]
     """
     return Columns(np.hstack([each.values for each in columns]), np.concatenate([each.kinds for each in columns]))

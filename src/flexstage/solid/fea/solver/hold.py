@@ -22,7 +22,7 @@ from flexstage.solid.fea.solver.field import (
     Forms,
     Inertia,
     KindSolver,
-    beside,
+    concatenate,
     factorise_kinds,
     mean_motion,
     rigid,
@@ -142,8 +142,8 @@ def _face_warping(item: Interface, space: Field) -> Columns:
 
 def _static_motions(moved: Sequence[Columns], space: Field, elastic: Forms, solve: KindSolver, loads: Columns) -> tuple[Columns, Columns]:
     """One face moved and all others fixed, u = R - K_ff^-1 K R; and the responses to loads within."""
-    motions = beside([Columns.of(np.zeros((space.size, 0))), *moved])
-    found = _moved(beside([replace(motions, values=times(elastic, motions.values)), loads]), solve)
+    motions = concatenate([Columns.of(np.zeros((space.size, 0))), *moved])
+    found = _moved(concatenate([replace(motions, values=times(elastic, motions.values)), loads]), solve)
     count = len(motions.kinds)
     return replace(motions, values=motions.values - found.values[:, :count]), found.some(slice(count, None))
 

@@ -26,7 +26,7 @@ from flexstage.solid.fea.solver.field import (
     Columns,
     Field,
     Inertia,
-    beside,
+    concatenate,
     degrees_of,
     field,
     held_at_mirrors,
@@ -113,13 +113,13 @@ def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, spring
     loads += [Columns.of(force[:, None]) for force in strokes.values()]  # stacks are whole
     loads += [Columns.of(rows.T) for rows in seats.values()]
     elastic, mass = problem.stiffness, problem.inertia
-    held = support(component, problem.field, reduction, elastic=elastic, mass=mass, loads=beside(loads))
+    held = support(component, problem.field, reduction, elastic=elastic, mass=mass, loads=concatenate(loads))
     report(Stage.REDUCING, 0.0)
     inner = [_modes(problem, held, reduction.modes, springs), held.within]
     if reduction.residual:
         forces = replace(held.faces, values=problem.inertia.times(held.faces.values))
         inner.append(replace(forces, values=held.solve(forces)))
-    basis = beside([held.faces, held.warps, _independent_columns(problem, beside(inner))])
+    basis = concatenate([held.faces, held.warps, _independent_columns(problem, concatenate(inner))])
     return _Motions(problem, basis, len(held.faces.kinds), len(held.warps.kinds), weights, strokes, seats)
 
 
@@ -163,7 +163,9 @@ def _modes(problem: _Problem, supported: Support, count: int, springs: Array | N
     kinds = range(problem.field.meshed.mirrors.copies)
     held = [np.flatnonzero(problem.field.free & ~held_at_mirrors(problem.field, kind)) for kind in kinds]
     found = lowest_modes([_pencil(problem, supported, springs, kind, free) for kind, free in zip(kinds, held, strict=True)], count)
-    result = beside([Columns(np.zeros((problem.field.size, own.shape[1])), np.full(own.shape[1], kind)) for kind, own in enumerate(found)])
+    result = concatenate(
+        [Columns(np.zeros((problem.field.size, own.shape[1])), np.full(own.shape[1], kind)) for kind, own in enumerate(found)]
+    )
     for kind, (free, own) in enumerate(zip(held, found, strict=True)):
         result.values[np.ix_(free, result.kinds == kind)] = own[: len(free)]
     return result
@@ -204,7 +206,7 @@ def _independent_columns(problem: _Problem, motions: Columns) -> Columns:
         values, vectors = np.linalg.eigh(0.5 * (energy + energy.T) * scale * scale[:, None])
         kept = values > _DEPENDENT
         found.append(Columns(own @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept])), np.full(int(kept.sum()), kind)))
-    return beside(found)
+    return concatenate(found)
 
 
 def _project(found: _Motions, report: Report) -> Superelement:

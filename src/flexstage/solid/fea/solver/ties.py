@@ -165,8 +165,8 @@ def in_words(stated: Mapping[str, str]) -> str:
     '2 springs, 1 voice coil as specified'
     """
     counts = Counter(_NOUNS.get(kind, kind.replace("_", " ")) for kind in stated.values())
-    said = ", ".join(f"{count} {noun}{'s' if count > 1 else ''}" for noun, count in counts.items())
-    return f"{said} as specified" if said else ""
+    text = ", ".join(f"{count} {noun}{'s' if count > 1 else ''}" for noun, count in counts.items())
+    return f"{text} as specified" if text else ""
 
 
 _NOUNS = {

@@ -12,12 +12,12 @@ from flexstage.studies.optimisation.search.search import run_searches, search
 from flexstage.studies.optimisation.setting import Setting
 from flexstage.studies.optimisation.values import Point
 
-Told = Callable[[int], None]
+CountReport = Callable[[int], None]
 _MOST = 6
 _COUNTS = 1e-4
 
 
-def contradictions(setting: Setting, starts: Sequence[Array], told: Told | None = None) -> tuple[Contradiction, ...]:
+def contradictions(setting: Setting, starts: Sequence[Array], told: CountReport | None = None) -> tuple[Contradiction, ...]:
     """Irreducible infeasible sets of limits, from any of the starts; none if all limits can be met.
 
     The largest relative violation is minimised; then limits are removed one at a time for as long as the others remain
@@ -27,17 +27,17 @@ def contradictions(setting: Setting, starts: Sequence[Array], told: Told | None 
     return tuple(_irreducible_sets(setting, list(starts), told))
 
 
-def _irreducible_sets(setting: Setting, starts: list[Array], told: Told | None) -> Iterator[Contradiction]:
+def _irreducible_sets(setting: Setting, starts: list[Array], report: CountReport | None) -> Iterator[Contradiction]:
     left = tuple(range(len(setting.kept)))
     for _ in range(_MOST):
-        found = _least_violation(setting, left, starts, told)
+        found = _least_violation(setting, left, starts, report)
         if found is None or found.violation <= SPARE:
             return
         begins = [found.point.shares, starts[0]]
         held = tuple(number for number, weight in zip(left, found.weights, strict=True) if weight > _COUNTS)
-        alone = _least_violation(setting, held, begins[:1], told)
+        alone = _least_violation(setting, held, begins[:1], report)
         suspects = held if alone is not None and alone.violation > SPARE else left
-        chosen, ended = _irreducible_set(setting, suspects, begins, told)
+        chosen, ended = _irreducible_set(setting, suspects, begins, report)
         yield Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point)
         left = tuple(number for number in left if number not in chosen)
 
@@ -51,17 +51,19 @@ class _Least:
     weights: tuple[float, ...]
 
 
-def _irreducible_set(setting: Setting, suspects: tuple[int, ...], starts: list[Array], told: Told | None) -> tuple[tuple[int, ...], _Least]:
+def _irreducible_set(
+    setting: Setting, suspects: tuple[int, ...], starts: list[Array], report: CountReport | None
+) -> tuple[tuple[int, ...], _Least]:
     """An irreducible infeasible set of limits; halves are tried before single ones."""
-    ended = _least_violation(setting, suspects, starts, told)
+    ended = _least_violation(setting, suspects, starts, report)
     assert ended is not None  # noqa: S101  one of the starts is an evaluated design
     size = max(1, len(suspects) // 2)
     place = 0
     while place < len(suspects):
-        rest = (*suspects[:place], *suspects[place + size :])
-        without = _least_violation(setting, rest, starts, told) if rest else None
+        others = (*suspects[:place], *suspects[place + size :])
+        without = _least_violation(setting, others, starts, report) if others else None
         if without is not None and without.violation > SPARE:
-            suspects, ended = rest, without
+            suspects, ended = others, without
             starts = [without.point.shares, *starts[1:]]
         elif size > 1:
             size = max(1, size // 2)
@@ -70,12 +72,12 @@ def _irreducible_set(setting: Setting, suspects: tuple[int, ...], starts: list[A
     return suspects, ended
 
 
-def _least_violation(setting: Setting, chosen: tuple[int, ...], starts: Sequence[Array], told: Told | None) -> _Least | None:
+def _least_violation(setting: Setting, chosen: tuple[int, ...], starts: Sequence[Array], report: CountReport | None) -> _Least | None:
     """The smallest largest violation, from any of the starts; `None` without limits or if no start can be evaluated."""
     if not chosen:
         return None
     problem = Problem(tuple(setting.side(number) for number in chosen), ())
-    traces = run_searches([search(problem, start, enough=SPARE) for start in starts], setting.values, told)
+    traces = run_searches([search(problem, start, enough=SPARE) for start in starts], setting.values, report)
     ended = [
         _Least(problem.worth(trace.point), trace.point, tuple(each.total for each in trace.weights) or (1.0,) * len(chosen))
         for trace in traces

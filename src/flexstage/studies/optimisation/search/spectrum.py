@@ -81,15 +81,15 @@ def _real(item: Contribution) -> Contribution:
     return Contribution(np.real(item.operator), np.real(item.law))
 
 
-def _select_modes(wanted: Modes, values: Array, parts: Array) -> Array:
+def _select_modes(requested: Modes, values: Array, parts: Array) -> Array:
     """Indices of the requested modes and of some above them, from their `participation` (6, k)."""
     if not np.all(np.isfinite(values)):
         raise refuse("frequency", "some motion has no stiffness", "Narrow the ranges")
-    if wanted.platform:
+    if requested.platform:
         found = np.flatnonzero(choose(values[None], parts[None], Choice()).mask[0])
     else:
-        found = np.arange(min(wanted.count + _ROOM, len(values)))
-    if len(found) < wanted.count:
+        found = np.arange(min(requested.count + _ROOM, len(values)))
+    if len(found) < requested.count:
         raise refuse("frequency", f"the stage has only {len(found)} such modes", "Use a lower number")
     return found
 

@@ -56,8 +56,8 @@ def _stage(stages: Mapping[str, StageData]) -> Section | None:
     drawn = {"nominal": stages["before"], "optimum": stages["stage"]}
     pictures = [_still(each, f"stage{place}", f"The stage, {name}.") for place, (name, each) in enumerate(drawn.items())]
     viewer = Viewer("stage", (Abreast(tuple(pictures)),), first_motion(stages["stage"]), "before")
-    said = "The optimum; in the viewer, the outline behind it is the nominal design."
-    return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(said)])
+    caption = "The optimum; in the viewer, the outline behind it is the nominal design."
+    return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(caption)])
 
 
 def _still(data: StageData, name: str, caption: str) -> Picture:
@@ -73,17 +73,17 @@ def front_report(found: Front) -> str:
         section("Front", [picture, *front_tables(found)]),
         caveat_section(found.study.design, loaded_findings(found.study)),
     ]
-    said = Headline(f"{len(found.points)} Pareto-optimal designs.")
-    return page(study_head(found.study, "A front of two objectives", said), sections, {"stage": data})
+    headline = Headline(f"{len(found.points)} Pareto-optimal designs.")
+    return page(study_head(found.study, "A front of two objectives", headline), sections, {"stage": data})
 
 
 def _headline(found: Optimum) -> Headline:
     """The objective before and after, and the number of met limits."""
-    asked, point = found.definition.objectives[0], found.final
+    objective, point = found.definition.objectives[0], found.final
     if point is None:
         return Headline(f"No design found: {found.failure}.", good=False)
-    before, after = (format_value(found.value(each), asked.measure.quantity.si) for each in (found.before, point))
+    before, after = (format_value(found.value(each), objective.measure.quantity.si) for each in (found.before, point))
     limits = zip(found.limits, point.values[len(found.definition.objectives) :], strict=True)
     kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
-    told = f"; {sum(kept)} of {len(kept)} limits are met" if kept else ""
-    return Headline(f"{asked.name}: {before} nominal, {after} at the optimum{told}.", all(kept))
+    kept_text = f"; {sum(kept)} of {len(kept)} limits are met" if kept else ""
+    return Headline(f"{objective.name}: {before} nominal, {after} at the optimum{kept_text}.", all(kept))

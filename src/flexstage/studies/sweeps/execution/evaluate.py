@@ -113,8 +113,8 @@ def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str], *,
 
 def _along_paths(study: Study, names: tuple[str, ...]) -> bool:
     """Whether some are measures along paths: sequential also in a batch, and slowest without an equilibrium."""
-    asked = [study.columns[name] for name in names]
-    return any(each.kind.along or each.path for each in asked)
+    measures = [study.columns[name] for name in names]
+    return any(each.kind.along or each.path for each in measures)
 
 
 def _check(study: Study, values: Array) -> Array | str:

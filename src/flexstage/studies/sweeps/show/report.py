@@ -54,11 +54,11 @@ def study_head(study: Study, kind: str, said: Headline) -> Head:
 def _headline(study: Study, results: Results) -> Headline:
     """Number of designs, and of feasible ones."""
     count, failed = len(results.designs), len(results.failures)
-    said = f"{count} designs of {len(study.variables)} variables" + (f", {failed} of them without values" if failed else "")
+    text = f"{count} designs of {len(study.variables)} variables" + (f", {failed} of them without values" if failed else "")
     if not study.limits or not count:
-        return Headline(f"{said}.")
+        return Headline(f"{text}.")
     kept = int(np.sum(study.feasible(results.responses)))
-    return Headline(f"{said}; {kept} meet all limits.", kept > 0)
+    return Headline(f"{text}; {kept} meet all limits.", kept > 0)
 
 
 def _parallel(study: Study, found: Effects) -> str:

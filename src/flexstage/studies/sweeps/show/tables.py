@@ -60,8 +60,8 @@ def limit_notes(study: Study, results: Results) -> list[str]:
     if never:
         return [f"No design meets {' nor '.join(never)}: widen the ranges, or reduce the requirements."]
     pairs = [pair for pair in combinations(alone, 2) if not np.any(alone[pair[0]] & alone[pair[1]])]
-    told = "; ".join(f"{first} and {second}" for first, second in pairs)
-    return [f"No design meets all limits at once{f': no design meets both {told}' if told else ''}."]
+    pair_text = "; ".join(f"{first} and {second}" for first, second in pairs)
+    return [f"No design meets all limits at once{f': no design meets both {pair_text}' if pair_text else ''}."]
 
 
 def share_table(found: Effects) -> Table:
@@ -85,8 +85,10 @@ def share_table(found: Effects) -> Table:
 
 def _error_note(found: Effects, order: int) -> list[str]:
     """Standard errors of indices."""
-    told = [f"{name} {100.0 * error:.1g} %" for name, error in zip(found.responses, found.errors[order], strict=True) if np.isfinite(error)]
-    return [f"Standard errors up to: {', '.join(told)}."] if told else []
+    texts = [
+        f"{name} {100.0 * error:.1g} %" for name, error in zip(found.responses, found.errors[order], strict=True) if np.isfinite(error)
+    ]
+    return [f"Standard errors up to: {', '.join(texts)}."] if texts else []
 
 
 def pair_table(found: Effects) -> Table:

@@ -20,7 +20,7 @@ _LIMITS = "Samples by value; black: the nominal design; red: the limits, and sam
 
 def tolerance_report(found: Toleranced) -> str:
     """A tolerance study as an HTML page: yields first, scatter, distributions, contributions, allowable tolerances, crosstalk."""
-    study, said = found.study, found.summary
+    study, statistics = found.study, found.summary
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     data = stage_data(study.design)
     sections: list[Section | None] = [
@@ -30,8 +30,8 @@ def tolerance_report(found: Toleranced) -> str:
         section("Scatter", [scatter_table(found)]),
         section("Responses", [spread_table(found), drawn if study.measures else None]),
         section("Variance contributions", [share_table(found)]),
-        section("Allowable tolerances", [allowance_table(found)] if said.lines else []),
-        section("Crosstalk", [crosstalk_table(found, each) for each in said.crosstalk]),
+        section("Allowable tolerances", [allowance_table(found)] if statistics.lines else []),
+        section("Crosstalk", [crosstalk_table(found, each) for each in statistics.crosstalk]),
         section("Failed samples", [failure_table(found.results)] if found.results.failures else []),
     ]
     return page(study_head(study, "Tolerances", _headline(found)), sections, {"stage": data})
@@ -42,6 +42,6 @@ def _headline(found: Toleranced) -> Headline:
     kept = found.summary.together
     if kept is None:
         return Headline(f"{found.summary.copies} samples, without a specification.")
-    said = f"{number(100.0 * kept.share, 4)} % of {kept.copies} samples meet all requirements"
+    text = f"{number(100.0 * kept.share, 4)} % of {kept.copies} samples meet all requirements"
     worst = min(found.summary.lines, key=lambda line: line.kept.share)
-    return Headline(f"{said}; lowest yield {number(100.0 * worst.kept.share, 4)} %, for {worst.column}.", kept.kept == kept.copies)
+    return Headline(f"{text}; lowest yield {number(100.0 * worst.kept.share, 4)} %, for {worst.column}.", kept.kept == kept.copies)
