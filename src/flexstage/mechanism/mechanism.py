@@ -242,7 +242,8 @@ class Mechanism(InNotebook, Description):
     `stops` end strokes, `paths` are what requirements over a stroke are judged along. `ground` names the material that the ground grows
     with (`none`: it does not grow). `temperatures` are changes since it was made, by body (`ground` too), and of `all` that has none of its
     own; a part has the mean of the bodies that it joins. `packages` are those that its kinds of parts, gauges and measures come from, each
-    perhaps with versions: `tapered-leaf >= 1`. `formulas` say, by address, what values are worked out of `numbers`; values are kept as they
+    perhaps with versions: `tapered-leaf >= 1`. `elastic_bodies`: the lumped model includes the flexibility of bodies, estimated from their
+    outlines. `formulas` say, by address, what values are worked out of `numbers`; values are kept as they
     come out.
     """
 
@@ -276,6 +277,7 @@ class Mechanism(InNotebook, Description):
     stops: Mapping[str, Stop] = _empty(WHERE_STATED)
     paths: Mapping[str, StrokePath] = _empty(DOCUMENT_ONLY | WHERE_STATED)
     temperatures: Mapping[str, Annotated[Number, TEMPERATURE]] = _empty(WHERE_STATED)
+    elastic_bodies: bool = field(default=False, metadata=WHERE_STATED)
 
     def view(self, *, motion: str = "mode 1") -> Any:
         """Return the interactive 3-D view of the stage, for a notebook or a page: `flexstage.view`."""

@@ -20,7 +20,7 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command, print_missing
-from flexstage.show.command.design import elastic_model
+from flexstage.show.command.design import Lumped, elastic_model
 from flexstage.show.command.displaced import Place, footing
 from flexstage.show.command.options import ModelName, Point, modes_option, parameters_option, temperature_option, text_option
 from flexstage.show.command.values import motions, names
@@ -42,7 +42,7 @@ Commands: TypeAlias = Annotated[
 
 @command()
 def workspace(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     model: ModelName = Model.LUMPED,
     command: Commands = None,
@@ -95,7 +95,7 @@ def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
 
 @command()
 def drift(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     ground: Annotated[
         str | None,
@@ -141,7 +141,7 @@ def sensitivities(
 
 @command()
 def budget(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     command: Commands = None,
     temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,
