@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -244,6 +244,6 @@ def test_a_stage_of_one_material_drifts_without_stress() -> None:
     """Flexible bodies change drift only where growth is hindered; forces on each body are in balance."""
     mechanism = elastic("double-triangle")
     steel = replace(mechanism, materials={name: replace(each, expansion=1e-5) for name, each in mechanism.materials.items()})
-    parts = {name: replace(each, expansion=1e-5) if hasattr(each, "expansion") else each for name, each in steel.parts.items()}
+    parts = {name: replace(cast("Any", each), expansion=1e-5) if hasattr(each, "expansion") else each for name, each in steel.parts.items()}
     found = drift(replace(steel, parts=parts), lumped(steel), ground="steel")
     assert np.max(np.abs(found.forces.values[..., 0])) < 1e-6
