@@ -178,6 +178,9 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
 def _rigid_bodies(mechanism: Mechanism) -> Iterator[Default]:
     """Bodies that are rigid as their flexibility has no estimate, by reason."""
     reasons = body_flexibilities(mechanism).reasons
+    if mechanism.elastic_bodies:
+        what = "the lumped model includes the flexibility of bodies, estimated from their outlines"
+        yield Default("elastic_bodies", what, "Compare with flexstage verify", frozenset({"mapping"}))
     for reason in dict.fromkeys(reasons.values()):
         names = name_first([name for name, each in reasons.items() if each == reason])
         yield Default(names, f"it is taken as rigid, its flexibility is not estimated: {reason}", "Compare with flexstage verify", _STILL)
@@ -295,6 +298,8 @@ def _overload_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _flexible_bodies(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Rigid bodies with a significant flexibility; none if the lumped or the ideal model is refused."""
+    if mechanism.elastic_bodies:
+        return ()
     try:
         return tuple(body_findings(body_effects(mechanism, drawn(mechanism), kinematics(mechanism))))
     except DesignError:

@@ -242,8 +242,9 @@ class Mechanism(InNotebook, Description):
 
     `stops` limit strokes, `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no
     expansion). `temperatures` are changes since manufacture, by body (also `ground`), and of `all` others; a part has the mean of its
-    bodies. `packages` provide kinds of parts, gauges and measures, with optional versions: `tapered-leaf >= 1`. `formulas`, by address,
-    compute values from `numbers`; the description stores the computed values.
+    bodies. `packages` provide kinds of parts, gauges and measures, with optional versions: `tapered-leaf >= 1`. With `elastic_bodies`,
+    the lumped model includes the flexibility of bodies, estimated from their outlines. `formulas`, by address, compute values from
+    `numbers`; the description stores the computed values.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a description", "stage")
@@ -276,6 +277,7 @@ class Mechanism(InNotebook, Description):
     stops: Mapping[str, Stop] = _empty(WHERE_STATED)
     paths: Mapping[str, StrokePath] = _empty(DOCUMENT_ONLY | WHERE_STATED)
     temperatures: Mapping[str, Annotated[Number, TEMPERATURE]] = _empty(WHERE_STATED)
+    elastic_bodies: bool = field(default=False, metadata=WHERE_STATED)
 
     def view(self, *, motion: str = "mode 1") -> Any:
         """Return the interactive 3-D view of the stage, for a notebook or a page: `flexstage.view`."""

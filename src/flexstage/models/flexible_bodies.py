@@ -18,11 +18,12 @@ from typing import Any
 import numpy as np
 import scipy
 
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.session import SESSION
 from flexstage.base.storage.digest import digest
 from flexstage.mechanism.assembly.expand import Assembly, PlacedBody, PlacedLink, expand
-from flexstage.mechanism.assembly.incidence import is_single
+from flexstage.mechanism.design import designs, step_size
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.channels import exerted_wrenches
 from flexstage.models.linear.model import Contribution, LinearModel
@@ -102,7 +103,7 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     ['platform', 'B/base', 'B/tip']
     """
     assembly = expand(mechanism)
-    if not is_single(assembly):
+    if _is_varied(mechanism):
         return BodyEstimates((), dict.fromkeys(assembly.bodies, "it is one of several designs"))
     if len(assembly.bodies) > _MOST:
         return BodyEstimates((), dict.fromkeys(assembly.bodies, f"the stage has more than {_MOST} bodies"))
@@ -121,6 +122,38 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     return BodyEstimates(tuple(found), reasons)
 
 
+def _is_varied(mechanism: Mechanism) -> bool:
+    """Whether a description holds several designs, or a complex step."""
+    return designs(mechanism) is not None or step_size(mechanism) != 0.0
+
+
+def with_estimated_bodies(model: LinearModel, mechanism: Mechanism) -> LinearModel:
+    """A lumped model of one design whose bodies have the flexibility that is estimated. Raises `DesignError` for several designs.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> BODIES in with_estimated_bodies(lumped(parallelogram()), parallelogram()).stiffness
+    True
+    """
+    if _is_varied(mechanism):
+        raise refuse("elastic_bodies", "several designs have rigid bodies", "Leave it out, or compute the designs one by one")
+    return with_flexible_bodies(model, mechanism, body_flexibilities(mechanism).found)
+
+
+def flexible_links(mechanism: Mechanism) -> tuple[str, ...]:
+    """Links that end on flexible bodies, in the order of their strains in a model.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> flexible_links(parallelogram())
+    ('left', 'right', 'B/front', 'B/back', 'B/pzt')
+    """
+    return _links(body_flexibilities(mechanism).found)
+
+
+def _links(flexibilities: Sequence[BodyFlexibility]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(link for each in flexibilities for link in each.links))
+
+
 def with_flexible_bodies(model: LinearModel, mechanism: Mechanism, flexibilities: Sequence[BodyFlexibility]) -> LinearModel:
     """A lumped model whose bodies yield between the ends of their links; masses, gauges and points stay with the mean motion of each body.
 
@@ -137,7 +170,7 @@ def with_flexible_bodies(model: LinearModel, mechanism: Mechanism, flexibilities
     True
     """
     assembly = expand(mechanism)
-    names = list(dict.fromkeys(link for each in flexibilities for link in each.links))
+    names = _links(flexibilities)
     if not names:
         return model
     row = {name: slice(6 * place, 6 * place + 6) for place, name in enumerate(names)}

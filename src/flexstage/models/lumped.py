@@ -28,6 +28,7 @@ from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.restrict import Freedoms
+from flexstage.models.flexible_bodies import with_estimated_bodies
 from flexstage.models.linear.channels import (
     Motions,
     absolute,
@@ -107,6 +108,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 
     - Locked freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion.
     - Free internal modes without effect keep their inertia, are removed with their zero modes, and are listed in `idle`.
+    - With `elastic_bodies`, bodies have the compliance that `body_flexibilities` estimates; batches of designs are refused.
 
     Raises `DesignError`:
 
@@ -168,7 +170,7 @@ def _model(mechanism: Mechanism, stage: _Stage, masses: Masses) -> LinearModel:
     if kept.driven is not None:
         feedthrough = feedthrough + _unsprung(stage, output) @ kept.driven
     idle = kept.idle
-    return LinearModel(
+    model = LinearModel(
         coordinates=kept.coordinates,
         stiffness=_stable(stage, {name: _through(item, basis) for name, item in stage.strains.items()}, len(kept.coordinates)),
         inertia={name: _through(item, basis) for name, item in inertia.items()},
@@ -191,6 +193,7 @@ def _model(mechanism: Mechanism, stage: _Stage, masses: Masses) -> LinearModel:
         floating=kept.floating,
         unknown=tuple(f"{name}.{FORCES[freedom.index]}" for name, freedoms in stage.freedoms.items() for freedom in freedoms),
     )
+    return with_estimated_bodies(model, mechanism) if mechanism.elastic_bodies else model
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,7 @@ from flexstage.mechanism.assembly.expansion import Expansion, Ground, expansion
 from flexstage.mechanism.assembly.incidence import deformation, layout
 from flexstage.mechanism.assembly.sight import Sight
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.models.flexible_bodies import BODIES, flexible_links
 from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.part import Restricted
@@ -114,6 +115,8 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
     if LOADED in model.stiffness:
         strains[LOADED] = _stacked(fitted, model.stiffness[LOADED])
+    if bent := flexible_links(mechanism) if BODIES in model.stiffness else ():
+        strains[BODIES] = np.concatenate([strains[name] for name in bent])
     if other := _unlinked(model, strains):
         what = f"drift requires stiffness of links only (got the stiffness of {other[0]})"
         raise refuse("drift", what, "Use the lumped model")
@@ -122,6 +125,10 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     twists = {body: moved + fitted.twists.get(body, 0.0) for body, moved in _twists(thermal.assembly, model, motion).items()}
     parts = {name: part for name, part in model.stiffness.items() if name in misfits}
     forces = {name: (part.law @ (part.operator @ motion + whole[name]))[..., :6, :] for name, part in parts.items()}
+    if bent:
+        bodies = model.stiffness[BODIES]
+        relief = bodies.law @ (bodies.operator @ motion + strains[BODIES])
+        forces |= {name: forces[name] + relief[6 * place : 6 * place + 6] for place, name in enumerate(bent)}
     return Drift(
         motion=_motions(thermal, twists),
         gauges=_gauges(thermal, twists),

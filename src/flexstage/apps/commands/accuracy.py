@@ -22,7 +22,7 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command, print_missing
-from flexstage.show.command.design import elastic_model
+from flexstage.show.command.design import Lumped, elastic_model
 from flexstage.show.command.displaced import Place, footing
 from flexstage.show.command.options import (
     InputDensities,
@@ -53,7 +53,7 @@ Commands: TypeAlias = Annotated[
 
 @command()
 def workspace(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     model: ModelName = Model.LUMPED,
     command: Commands = None,
@@ -106,7 +106,7 @@ def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
 
 @command()
 def drift(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     ground: Annotated[
         str | None,
@@ -152,7 +152,7 @@ def sensitivities(
 
 @command()
 def budget(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     command: Commands = None,
     temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,

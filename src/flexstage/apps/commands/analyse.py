@@ -16,11 +16,12 @@ from flexstage.analysis.caveats import caveats
 from flexstage.analysis.complete import Analysis
 from flexstage.base.finding import combine_warnings
 from flexstage.base.storage.document import Document, as_text
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import list_caveats, print_missing, show, write_csv, write_workbook
-from flexstage.show.command.design import change, open_design
+from flexstage.show.command.design import change, open_design, with_elastic_bodies
 from flexstage.show.command.failure import MISSED
-from flexstage.show.command.options import Changes, Csv, Design, Full, Json, ModelName, Report, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, ElasticBodies, Full, Json, ModelName, Report, Xlsx, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
@@ -43,6 +44,7 @@ def analyse(  # noqa: PLR0913 (its options)
     model: ModelName = Model.LUMPED,
     report: Report = None,
     changes: Changes = None,
+    elastic_bodies: ElasticBodies = False,
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
@@ -59,7 +61,8 @@ def analyse(  # noqa: PLR0913 (its options)
     """
     outputs: list[tuple[str, str | Path | None]] = [("--json", json), ("--xlsx", xlsx), ("--report", report), ("--mat", mat)]
     whole = full or csv is not None or any(each is not None for _, each in outputs)
-    analysis, compared = _worked_out(design, model, changes or [], outputs, whole=whole)
+    stated = with_elastic_bodies(open_design(design, (), outputs), chosen=elastic_bodies)
+    analysis, compared = _worked_out(stated, model, changes or [], whole=whole)
     if mat is not None:
         from flexstage.show.matlab import as_mat
 
@@ -81,11 +84,8 @@ def analyse(  # noqa: PLR0913 (its options)
         raise typer.Exit(MISSED)
 
 
-def _worked_out(
-    design: Path, model: Model, changes: list[str], outputs: list[tuple[str, str | Path | None]], *, whole: bool
-) -> tuple[Analysis, Comparison | None]:
+def _worked_out(stated: Mechanism, model: Model, changes: list[str], *, whole: bool) -> tuple[Analysis, Comparison | None]:
     """The analysis of the design with its changes, and their effect if there are any."""
-    stated = open_design(design, (), outputs)
     analysis = complete.analyse(change(stated, changes), model, whole=whole)
     if not changes:
         return analysis, None

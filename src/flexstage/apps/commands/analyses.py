@@ -28,7 +28,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
-from flexstage.show.command.design import known_point
+from flexstage.show.command.design import Lumped, known_point
 from flexstage.show.command.displaced import Place, footing
 from flexstage.show.command.options import InputDensities, ModelName, Point, band_option, text_option
 from flexstage.show.command.output import save
@@ -80,7 +80,7 @@ def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
 
 @command()
 def stiffness(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     model: ModelName = Model.LUMPED,
     point: Point = PLATFORM,
@@ -128,7 +128,7 @@ def _stiffness_tables(
 
 @command()
 def lost_motion(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     model: ModelName = Model.LUMPED,
     place: Place,
@@ -162,7 +162,7 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
 
 @command("view")
 def modes(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     model: ModelName = Model.LUMPED,
     view: Annotated[
@@ -223,7 +223,7 @@ def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> 
 
 @command()
 def response(
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     model: ModelName = Model.LUMPED,
     inputs: Annotated[

@@ -23,9 +23,9 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.experiment.pipeline import Identification, identification, usable_measurement
 from flexstage.experiment.progress import Told, followed
 from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
-from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
+from flexstage.show.command.design import Lumped
 from flexstage.show.command.displaced import Footing, Place, footing
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
@@ -46,7 +46,7 @@ else:
 @command("report", "export", "hardware")
 def loop(  # noqa: PLR0913  a loop has that many knobs
     context: typer.Context,
-    mechanism: Mechanism,
+    mechanism: Lumped,
     options: LoopOptions,
     place: Place,
     *,

@@ -13,10 +13,9 @@ from flexstage.experiment import comparison
 from flexstage.experiment.record_options import RECORD, Moved, RecordTexts, identify_records, shapes_on
 from flexstage.experiment.show.report import compare_report
 from flexstage.experiment.show.sections import compare_tables
-from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
-from flexstage.show.command.design import elastic_model
+from flexstage.show.command.design import Lumped, elastic_model
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import FEA, ModelName
 from flexstage.show.command.terminal import print_warning
@@ -25,7 +24,7 @@ from flexstage.show.command.terminal import print_warning
 @command("report")
 def compare(
     context: typer.Context,
-    mechanism: Mechanism,
+    mechanism: Lumped,
     *,
     record: Annotated[list[Path], RECORD],
     model: ModelName = Model.LUMPED,

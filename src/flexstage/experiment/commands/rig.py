@@ -18,11 +18,12 @@ from flexstage.experiment.virtual_rig.tables import rig_table
 from flexstage.models.theory import Model
 from flexstage.parts.amplifier import Amplifier
 from flexstage.show.command.answer import list_caveats, show
-from flexstage.show.command.design import elastic_model, open_design
+from flexstage.show.command.design import elastic_model, open_design, with_elastic_bodies
 from flexstage.show.command.options import (
     AmplifierValues,
     Changes,
     Design,
+    ElasticBodies,
     GaugeNoise,
     GaugeResolution,
     ModelName,
@@ -72,6 +73,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     ] = None,
     model: ModelName = Model.LUMPED,
     changes: Changes = None,
+    elastic_bodies: ElasticBodies = False,
 ) -> None:
     """Test a stage on a virtual rig; write the record.
 
@@ -79,7 +81,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 
     Equal seeds give equal files. `flexstage identify` finds the modes in it as in any record.
     """
-    mechanism = open_design(design, changes, [("--output", output)])
+    mechanism = with_elastic_bodies(open_design(design, changes, [("--output", output)]), chosen=elastic_bodies)
     values = Values()
     setup = RigSetup(
         seconds=seconds,

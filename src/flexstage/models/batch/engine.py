@@ -14,7 +14,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array
 from flexstage.base.processes.threads import one_thread
 from flexstage.mechanism.mechanism import Mechanism
@@ -99,6 +99,8 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: Ranges | 
     2
     """
     choice = choice or Choice()
+    if family_.mechanism.elastic_bodies:
+        raise refuse("elastic_bodies", "several designs have rigid bodies", "Leave it out, or compute the designs one by one")
     model = lumped(family_.mechanism)  # raises `DesignError` for free motions of bodies
     if family_.topology.locked:
         return Plan(family_, choice, {})

@@ -164,6 +164,8 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     >>> [group.names for group in nonlinear(parallelogram()).flexures]
     [('left', 'right'), ('B/back', 'B/front')]
     """
+    if mechanism.elastic_bodies:
+        raise refuse("elastic_bodies", "bodies are rigid at large displacements", "Leave it out")
     assembly = expand(mechanism)
     bodies = layout(assembly).bodies
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])

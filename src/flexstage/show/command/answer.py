@@ -21,7 +21,7 @@ from flexstage.base.storage.document import Document, as_text
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
-from flexstage.show.command.design import DesignOptions
+from flexstage.show.command.design import DesignOptions, Lumped, LumpedOptions
 from flexstage.show.command.failure import MISSED
 from flexstage.show.command.options import Csv, Json, Report, Xlsx
 from flexstage.show.command.output import STDOUT, announce, make_folder, require_writable, save, write
@@ -60,7 +60,7 @@ class CommandResult:
 
 
 _OUTPUTS = {"json": Json, "csv": Csv, "xlsx": Xlsx, "report": Report}
-_KINDS: Mapping[Any, Any] = {Mechanism: DesignOptions}
+_KINDS: Mapping[Any, Any] = {Mechanism: DesignOptions, Lumped: LumpedOptions}
 _Given = ParamSpec("_Given")
 
 

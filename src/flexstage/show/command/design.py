@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated, TypeAlias
 
 from flexstage.analysis.complete import felt, read
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
@@ -15,7 +16,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
-from flexstage.show.command.options import Changes, Design
+from flexstage.show.command.options import Changes, Design, ElasticBodies
 from flexstage.show.command.output import require_writable
 from flexstage.show.command.terminal import print_note
 from flexstage.spatial.frame import COMPONENTS
@@ -31,6 +32,26 @@ class DesignOptions:
     def open(self) -> Mechanism:
         """The changed description. Raises `DesignError` with all errors."""
         return open_design(self.design, self.changes)
+
+
+Lumped: TypeAlias = Annotated[Mechanism, "a lumped model may include the flexibility of its bodies"]
+"""The description that a command of the lumped model reads."""
+
+
+@dataclass(frozen=True)
+class LumpedOptions(DesignOptions):
+    """The design file of a command of the lumped model."""
+
+    elastic_bodies: ElasticBodies = False
+
+    def open(self) -> Mechanism:
+        """The description with its changes, and with flexible bodies if requested."""
+        return with_elastic_bodies(super().open(), chosen=self.elastic_bodies)
+
+
+def with_elastic_bodies(mechanism: Mechanism, *, chosen: bool) -> Mechanism:
+    """The description with flexible bodies in its lumped model, if chosen."""
+    return replace(mechanism, elastic_bodies=True) if chosen else mechanism
 
 
 def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Sequence[tuple[str, str | Path | None]] = ()) -> Mechanism:

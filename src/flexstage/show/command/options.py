@@ -78,6 +78,10 @@ Changes: TypeAlias = Annotated[
     ),
 ]
 
+ElasticBodies: TypeAlias = Annotated[
+    bool, typer.Option("--elastic-bodies", help="Flexibility of bodies in the lumped model, estimated from their outlines.")
+]
+
 Json: TypeAlias = Annotated[str | None, text_option("--json", "-|FILE", "Write the result as JSON: to stdout (-) or a file.")]
 
 Csv: TypeAlias = Annotated[

@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.analysis.assessment import measures
 from flexstage.analysis.assessment.measures import MeasureKind
 from flexstage.analysis.assessment.requirements import Verdict
-from flexstage.analysis.complete import Analysis
+from flexstage.analysis.complete import Analysis, Model
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.base.labelled import NOISE
@@ -44,8 +44,9 @@ def stage_text(analysis: Analysis) -> str:
     free = f"{count_text(found.mobility, 'freedom')} ({', '.join(found.coordinates)})" if found.coordinates else "no freedoms"
     driven = [count_text(len(found.actuators), "actuator")] if found.actuators or not found.thrusts else []
     forced = [count_text(len(found.thrusts), "force actuator")] if found.thrusts else []
+    with_bodies = " with elastic bodies" if analysis.mechanism.elastic_bodies and analysis.model is Model.LUMPED else ""
     things = ", ".join([free, *driven, *forced, count_text(len(found.gauges), "gauge")])
-    return f"{analysis.mechanism.name or 'stage'}, {analysis.model.value} model: {things}"
+    return f"{analysis.mechanism.name or 'stage'}, {analysis.model.value} model{with_bodies}: {things}"
 
 
 def load_line(analysis: Analysis) -> str | None:
