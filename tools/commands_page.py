@@ -8,6 +8,7 @@ from pathlib import Path
 from typer import Context
 
 from flexstage.apps.cli.commands import COMMANDS, Command, LazyCommand
+from flexstage.apps.cli.option_groups import default_last
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "commands.md"
 _HEAD = """\
@@ -35,7 +36,7 @@ def _section(command: Command) -> str:
     context = Context(loaded, info_name=f"flexstage {command.name}")
     usage = " ".join(loaded.get_usage(context).removeprefix("Usage:").split())
     records = [each.get_help_record(context) for each in loaded.params]
-    rows = [f"| `{_cell(name)}` | {_cell(meaning)} |" for name, meaning in filter(None, records)]
+    rows = [f"| `{_cell(name)}` | {_cell(default_last(meaning))} |" for name, meaning in filter(None, records)]
     table = "\n".join(["| argument or option | meaning |", "|---|---|", *rows])
     return f"### {command.name}\n\n{command.help}\n\n```text\n{usage}\n{command.example}\n```\n\n{table}\n"
 

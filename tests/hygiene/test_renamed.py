@@ -67,6 +67,23 @@ def test_a_file_with_an_old_key_is_refused_with_file_line_and_new_key(kind: str,
         READERS[kind](text, where="a.toml")
 
 
+SPELLINGS = {
+    ("design", 'bodies.a = { center = ["1 mm", "0 mm", "0 mm"] }'): "Use centre",
+    ("study", "[optimize]"): "Use optimise",
+    ("study", 'optimise.maximize = "f"'): "Use maximise",
+    ("study", 'optimise.minimize = "f"'): "Use minimise",
+    ("loop", 'quantization = "1 nm"'): "unknown key",
+}
+"""Lines of files in American spelling, and their refusals: files have British spelling only."""
+
+
+@pytest.mark.parametrize(("kind", "line"), SPELLINGS)
+def test_american_spelling_of_a_key_is_refused_with_the_british_one(kind: str, line: str) -> None:
+    text = f'format = "flexstage{"" if kind == "design" else f" {kind}"} 1"\n\n{line}\n'
+    with pytest.raises(DesignError, match=SPELLINGS[kind, line]):
+        READERS[kind](text, where="a.toml")
+
+
 def test_an_old_table_next_to_the_new_one_is_refused_with_its_name() -> None:
     with pytest.raises(DesignError, match=r":\d+: place: .* Use placements"):
         loads(dumps(parallelogram()) + '[place.C]\nunit = "strut"\n')

@@ -148,7 +148,7 @@ def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> 
     word = name[:80].lower()
     begin = [each for each in lowered if len(word.strip("-")) > 2 and each.startswith(word)]
     close = difflib.get_close_matches(word, lowered, n=_SUGGESTIONS, cutoff=0.6)
-    similar = [lowered[each] for each in dict.fromkeys([*begin, *close])][:_SUGGESTIONS]
+    similar = [lowered[each] for each in (begin or close)][:_SUGGESTIONS]
     if otherwise and not similar:
         return otherwise
     if not known:

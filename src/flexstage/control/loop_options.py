@@ -18,7 +18,7 @@ from flexstage.control.study.setup import LoopSetup
 from flexstage.control.tuning.objective import TuningObjective
 from flexstage.models.theory import Model
 from flexstage.show.command.options import (
-    MODEL,
+    ELASTIC_MODEL,
     AmplifierValues,
     GaugeNoise,
     GaugeResolution,
@@ -95,17 +95,15 @@ class LoopOptions:
     ] = None
     amplitude: Annotated[
         list[str] | None,
-        text_option("--amplitude", "AXIS=VALUE", "Amplitude of a step or sine, e.g. x=1um. Repeatable. Default: 1 um, 10 urad, all axes."),
+        text_option("--amplitude", "AXIS=VALUE", "Amplitude of a step or sine, e.g. x=1um. Default: 1 um, 10 urad, all axes. Repeatable."),
     ] = None
-    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until all axes have settled.")] = (
-        None
-    )
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until settled.")] = None
     feedforward: Annotated[
         list[str] | None,
         text_option(
             "--feedforward",
             "NAME",
-            f"Feedforward: {', '.join(each.value for each in Compensation)}, or none. Repeatable. Default: lost-motion.",
+            f"Feedforward: {', '.join(each.value for each in Compensation)}, or none. Default: lost-motion. Repeatable.",
         ),
     ] = None
     hysteresis: Annotated[
@@ -114,13 +112,13 @@ class LoopOptions:
     ] = None
     floor: Annotated[
         list[str] | None,
-        text_option("--floor", "[AXIS=]VALUE", 'Floor vibration: VC-D, z=VC-C or "x=3 um/s^2/Hz^0.5". Repeatable. Default: none.'),
+        text_option("--floor", "[AXIS=]VALUE", 'Floor vibration: VC-D, z=VC-C or "x=3 um/s^2/Hz^0.5". Default: none. Repeatable.'),
     ] = None
     gauge_noise: GaugeNoise = None
     resolution: GaugeResolution = None
     amplifier: AmplifierValues = None
     seed: Seed = None
-    model: Annotated[Model | None, MODEL] = None
+    model: Annotated[Model | None, ELASTIC_MODEL] = None
 
     def read(self) -> tuple[LoopSetup, list[Finding]]:
         """Read the options: the set-up without invalid ones, and their findings."""

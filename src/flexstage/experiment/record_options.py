@@ -37,13 +37,13 @@ else:
 
 RECORD = text_option("--record", "RECORD", "Record or frequency responses of a test. Repeatable.")
 Inputs: TypeAlias = Annotated[
-    list[str] | None, text_option("--inputs", "NAMES", 'Input channels, e.g. "u*" or B1,B2. Repeatable. Default: by role, else by name.')
+    list[str] | None, text_option("--inputs", "NAMES", 'Input channels, e.g. "u*" or B1,B2. Default: by role, else by name. Repeatable.')
 ]
 Outputs: TypeAlias = Annotated[
-    list[str] | None, text_option("--outputs", "NAMES", 'Output channels, e.g. "S?". Repeatable. Default: by role, else by name.')
+    list[str] | None, text_option("--outputs", "NAMES", 'Output channels, e.g. "S?". Default: by role, else by name. Repeatable.')
 ]
 Channels: TypeAlias = Annotated[
-    list[str] | None, text_option("--channels", "NAMES", 'Channels to use, e.g. "S*". Repeatable. Default: all.')
+    list[str] | None, text_option("--channels", "NAMES", 'Channels to use, e.g. "S*". Default: all. Repeatable.')
 ]
 Units: TypeAlias = Annotated[list[str] | None, text_option("--units", "NAMES=UNIT", 'Units of channels, e.g. "S*=um". Repeatable.')]
 Rate: TypeAlias = Annotated[str | None, rate_option("that of the file")]
@@ -71,7 +71,7 @@ Moved: TypeAlias = Annotated[
     word_option(
         "--excitation",
         Excitation,
-        "Excitation: recorded inputs, floor, or free decay after a blow. Default: recorded.",
+        "Excitation: recorded inputs, floor, or free decay. Default: recorded.",
         show_default=False,
     ),
 ]

@@ -12,6 +12,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.exceptions import TyperException
 from typer.main import get_command
 
+from flexstage.apps.cli.option_groups import GroupedOptionsCommand
 from flexstage.apps.cli.usage import usage_error
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.renamed import new_name
@@ -59,13 +60,13 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage check stage.toml"),
     Command("schema", _DESCRIBE, "Print the JSON Schema of a kind of file, for editors.", f"{_APPS}.describe:schema",
             "flexstage schema > flexstage.schema.json"),
-    Command("studio", _DESCRIBE, "Open a stage in the browser: change it, see what it does.", "flexstage.apps.studio.command:studio",
+    Command("studio", _DESCRIBE, "Open a stage in the browser, and edit it.", "flexstage.apps.studio.command:studio",
             "flexstage studio stage.toml"),
     Command("plan", _DESCRIBE, "Draw the dimensioned plan.", f"{_APPS}.describe:plan",
             "flexstage plan stage.toml -o plan.svg"),
-    Command("catalogue", _DESCRIBE, "List the shipped materials, piezo stacks and gauges.", f"{_APPS}.describe:catalogue",
+    Command("catalogue", _DESCRIBE, "List the shipped materials, actuators and sensors.", f"{_APPS}.describe:catalogue",
             "flexstage catalogue stacks"),
-    Command("import", _DESCRIBE, "State a STEP file as an outline.", f"{_SOLID}.exchange:state",
+    Command("import", _DESCRIBE, "Import a STEP file as an outline of a body.", f"{_SOLID}.exchange:state",
             "flexstage import part.step stage.toml --material steel"),
     Command("cad", _DESCRIBE, "Write a stage as solids.", f"{_SOLID}.exchange:cad",
             "flexstage cad stage.toml -o stage.step"),
@@ -73,57 +74,57 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage superelement stage.toml platform -o frame.npz"),
     Command("analyse", _ANALYSE, "Analyse a stage: everything at once.", f"{_APPS}.analyse:analyse",
             "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
-    Command("mapping", _ANALYSE, "Mappings R_a and R_s, mobility, redundancy.", f"{_APPS}.analyses:mapping",
+    Command("mapping", _ANALYSE, "Compute the mappings R_a and R_s, mobility, redundancy.", f"{_APPS}.analyses:mapping",
             "flexstage mapping stage.toml --json -"),
-    Command("stiffness", _ANALYSE, "Compliance and stiffness of the platform.", f"{_APPS}.analyses:stiffness",
+    Command("stiffness", _ANALYSE, "Compute compliance and stiffness of the platform.", f"{_APPS}.analyses:stiffness",
             "flexstage stiffness stage.toml --model mapped"),
-    Command("lost-motion", _ANALYSE, "Gain, loss and its budget by part, crosstalk, correction.", f"{_APPS}.analyses:lost_motion",
+    Command("lost-motion", _ANALYSE, "Compute lost motion by part, crosstalk and correction.", f"{_APPS}.analyses:lost_motion",
             "flexstage lost-motion stage.toml --set vertical/pivot.thickness=0.9mm"),
-    Command("modes", _ANALYSE, "Natural frequencies, names and shapes.", f"{_APPS}.analyses:modes",
+    Command("modes", _ANALYSE, "Compute natural frequencies, mode names and shapes.", f"{_APPS}.analyses:modes",
             "flexstage modes stage.toml --model mapped --json modes.json"),
-    Command("response", _ANALYSE, "Frequency response of outputs to inputs.", f"{_APPS}.analyses:response",
+    Command("response", _ANALYSE, "Compute frequency responses of outputs to inputs.", f"{_APPS}.analyses:response",
             'flexstage response stage.toml --input ground.z --output platform.z --band "1 Hz" "1 kHz"'),
-    Command("stroke", _ANALYSE, "Force, stiffness, parasitic motion, frequencies over a stroke.", f"{_APPS}.displaced:stroke",
+    Command("stroke", _ANALYSE, "Compute force, stiffness and frequencies over a stroke.", f"{_APPS}.displaced:stroke",
             'flexstage stroke stage.toml --drive platform.x --to "50 um" --steps 3'),
     Command("buckle", _ANALYSE, "Find the load at which the stage buckles.", f"{_APPS}.displaced:buckle",
             'flexstage buckle stage.toml --scale-load "platform.fz=-100 kN" --post-buckling 3'),
-    Command("misalign", _ANALYSE, "Compute internal loads of a misaligned, over-constrained stage.", f"{_APPS}.displaced:misalign",
+    Command("misalign", _ANALYSE, "Compute loads of a misaligned, over-constrained stage.", f"{_APPS}.displaced:misalign",
             "flexstage misalign stage.toml --instance B4 --rotation y --steps 3"),
-    Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_APPS}.accuracy:workspace",
+    Command("workspace", _ANALYSE, "Compute strokes, forces, clearances and safety.", f"{_APPS}.accuracy:workspace",
             "flexstage workspace stage.toml --command x=50um --command rz=244urad"),
-    Command("drift", _ANALYSE, "Thermal drift of platform, named points and gauges.", f"{_APPS}.accuracy:drift",
+    Command("drift", _ANALYSE, "Compute thermal drift of platform, points and gauges.", f"{_APPS}.accuracy:drift",
             "flexstage drift stage.toml --ground none"),
-    Command("sensitivities", _ANALYSE, "Exact derivatives with respect to every number.", f"{_APPS}.accuracy:sensitivities",
+    Command("sensitivities", _ANALYSE, "Compute derivatives with respect to every parameter.", f"{_APPS}.accuracy:sensitivities",
             "flexstage sensitivities stage.toml --parameters parts.neck.thickness"),
-    Command("budget", _ANALYSE, "Error budget in nm and nrad, one line an axis.", f"{_APPS}.accuracy:budget",
+    Command("budget", _ANALYSE, "Compute the error budget of each axis in nm and nrad.", f"{_APPS}.accuracy:budget",
             "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
-    Command("solid", _PROVE, "Read a stage as elastic solids, by finite elements.", f"{_SOLID}.solid:solid",
+    Command("solid", _PROVE, "Analyse a stage as elastic solids by finite elements.", f"{_SOLID}.solid:solid",
             "flexstage solid stage.toml --scope unit --report units.html"),
-    Command("verify", _PROVE, "Compare theory with finite elements: which to trust?", f"{_SOLID}.solid:verify",
+    Command("verify", _PROVE, "Compare theory with finite elements.", f"{_SOLID}.solid:verify",
             "flexstage verify stage.toml --report verified.html"),
-    Command("calibrate", _PROVE, "Give hinges their 6x6 from finite elements.", f"{_SOLID}.solid:calibrate",
+    Command("calibrate", _PROVE, "Calibrate the 6x6 of hinges by finite elements.", f"{_SOLID}.solid:calibrate",
             "flexstage calibrate stage.toml -o stage-calibrated.toml"),
     Command("rig", _TEST, "Test a stage on a virtual rig; write the record.", f"{_EXPERIMENT}.rig:rig",
             "flexstage rig stage.toml --seconds 10 --drive-rms 1um --drift 5nm -o record.uff"),
     Command("identify", _TEST, "Find the modes in records of a test.", f"{_EXPERIMENT}.identify:identify",
             "flexstage identify record.uff --stage stage.toml --report modes.html"),
-    Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_EXPERIMENT}.compare:compare",
+    Command("compare", _TEST, "Compare theory, FEA and experiment.", f"{_EXPERIMENT}.compare:compare",
             "flexstage compare stage.toml --record record.uff --report compared.html"),
-    Command("update", _TEST, "Bring a stage's numbers to agree with a test.", f"{_EXPERIMENT}.update:update",
+    Command("update", _TEST, "Update parameters of a stage from a test.", f"{_EXPERIMENT}.update:update",
             'flexstage update stage.toml --record record.uff --parameters "neck.thickness, steel.density" -o updated.toml'),
     Command("hysteresis", _TEST, "Identify the hysteresis of a stack.", f"{_CONTROLLED}.hysteresis:hysteresis",
             'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
     Command("loop", _CONTROL, "Close the control loop of a stage.", f"{_CONTROLLED}.loop:loop",
             "flexstage loop stage.toml --floor VC-D --report loop.html"),
-    Command("serve", _CONTROL, "Run a stage as a virtual controller that programs drive over TCP.", f"{_CONTROLLED}.serve:serve",
+    Command("serve", _CONTROL, "Run a virtual controller of a stage over TCP.", f"{_CONTROLLED}.serve:serve",
             "flexstage serve stage.toml"),
     Command("design", _IMPROVE, "Design stages for a specification.", f"{_STUDIES}.design:design",
             "flexstage design spec.toml -o answers"),
-    Command("sweep", _IMPROVE, "Compute many designs; show what varies with what.", f"{_STUDIES}.sweep:sweep",
+    Command("sweep", _IMPROVE, "Compute many designs of a study.", f"{_STUDIES}.sweep:sweep",
             "flexstage sweep study.toml -o results.h5 --report sweep.html"),
     Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_STUDIES}.optimise:optimise",
             "flexstage optimise study.toml -o better.toml --report optimum.html"),
-    Command("tolerance", _IMPROVE, "Scatter dimensions and materials: yield, allowances.", f"{_STUDIES}.tolerance:tolerance",
+    Command("tolerance", _IMPROVE, "Analyse tolerances: yield and allowances.", f"{_STUDIES}.tolerance:tolerance",
             "flexstage tolerance study.toml --report tolerance.html"),
     Command("doctor", _INSTALLATION, "Examine the installation.", f"{_APPS}.about:doctor",
             "flexstage doctor"),
@@ -150,7 +151,7 @@ class LazyCommand(TyperCommand):
         home = self.command.load()
         if not isinstance(home, typer.Typer):
             function, home = home, typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
-            home.command(self.command.name, epilog=f"Example: {self.command.example}")(function)
+            home.command(self.command.name, cls=GroupedOptionsCommand, epilog=f"Example: {self.command.example}")(function)
         return get_command(home)
 
 
@@ -222,8 +223,6 @@ def _print_version(*, requested: bool) -> None:
 
 def _options(
     *,
-    version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version of flexstage and stop.")
-    ] = False,
+    version: Annotated[bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Version of flexstage.")] = False,
 ) -> None:
     pass

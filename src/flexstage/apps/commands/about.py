@@ -14,8 +14,8 @@ from flexstage.show.command.terminal import print_result
 def doctor() -> None:
     """Examine the installation.
 
-    Python, packages, threads, folders, a computation with a known result. What is wrong comes with the command that mends it. Exit
-    code 2 if anything is bad.
+    Checks Python, packages, threads, folders and a computation with a known result. Prints a command to fix each error. Exit
+    code 2 if there is an error.
     """
     raise typer.Exit(installation.consult())
 

@@ -46,7 +46,7 @@ Commands: TypeAlias = Annotated[
     text_option(
         "--command",
         "AXIS=VALUE",
-        "Motion both ways that is asked of the platform, all at once, e.g. x=50um, rz=244urad. Default: the required strokes.",
+        "Motion of the platform in both directions, e.g. x=50um. Default: the required strokes.",
     ),
 ]
 
@@ -58,10 +58,10 @@ def workspace(
     model: ModelName = Model.LUMPED,
     command: Commands = None,
 ) -> CommandResult:
-    """What the stage reaches and bears.
+    """Compute strokes, forces, clearances and safety.
 
-    Strokes, forces, volts, gauges, clearance, error of the linear map, stress, buckling, loads. Of a stage that forces move: how far, what
-    limits it, and the current, volts and heat of holding it there.
+    Prints strokes, forces, voltages, gauge readings, clearance, kinematic error, stress, buckling and loads. For a force-driven stage:
+    strokes with their limits, current, voltage and heat.
     """
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
@@ -110,14 +110,12 @@ def drift(
     *,
     ground: Annotated[
         str | None,
-        text_option(
-            "--ground", "MATERIAL", "Material of the ground; none: it does not grow. Default: the design's, else that of all links on it."
-        ),
+        text_option("--ground", "MATERIAL", "Material of the ground; none: no expansion. Default: the design's, else that of its links."),
     ] = None,
 ) -> CommandResult:
-    """Thermal drift of platform, named points and gauges.
+    """Compute thermal drift of platform, points and gauges.
 
-    Per kelvin and per kelvin per metre, by the lumped model; of the loaded stage where its dead load is felt.
+    Prints drift per kelvin and per kelvin per metre by the lumped model. Significant permanent loads are included.
     """
     stands = footing(mechanism, Place())
     found = drifting.drift(mechanism, stands.links, ground=ground)
@@ -136,9 +134,10 @@ def sensitivities(
     parameters: Annotated[list[str] | None, parameters_option("every number")] = None,
     count: Annotated[int, modes_option(min=1)] = 12,
 ) -> CommandResult:
-    """Exact derivatives with respect to every number.
+    """Compute derivatives with respect to every parameter.
 
-    Of frequencies, gains and losses, by the lumped model; of frequencies alone where the strokes do not determine the platform.
+    Prints exact derivatives of frequencies, transmission ratios and lost motion by the lumped model. Force-driven stages have
+    frequencies only.
     """
     found = derivatives.sensitivities(mechanism, names(parameters) if parameters else None, modes=count)
     print_missing(found.missing)
@@ -160,7 +159,7 @@ def budget(
     input_asd: InputDensities = None,
     band: Annotated[tuple[str, str] | None, band_option("that of response")] = None,
 ) -> CommandResult:
-    """Error budget in nm and nrad, one line an axis.
+    """Compute the error budget of each axis in nm and nrad.
 
     Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped model.
 

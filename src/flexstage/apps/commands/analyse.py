@@ -48,16 +48,16 @@ def analyse(  # noqa: PLR0913 (its options)
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
-    mat: Annotated[Path | None, text_option("--mat", "FILE", "Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.")] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
+    mat: Annotated[Path | None, text_option("--mat", "FILE", "MATLAB file: R_a, R_s, K, M, B, C, D, state space.")] = None,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 for a missed requirement.")] = False,
     full: Full = False,
 ) -> None:
     """Analyse a stage: everything at once.
 
-    Shown in short: requirements, strokes, stiffness, modes, lost motion, warnings, the verdict. With --full kinematics, workspace, drift
-    and error budget too; documents and reports are always whole.
+    Prints requirements, strokes, stiffness, modes, lost motion, warnings and the verdict. With --full also kinematics, workspace, drift
+    and error budget. Documents and reports are complete.
 
-    With --set, the key figures are shown as old, new and change, in the report too.
+    With --set, also prints key figures before and after the change.
     """
     outputs: list[tuple[str, str | Path | None]] = [("--json", json), ("--xlsx", xlsx), ("--report", report), ("--mat", mat)]
     whole = full or csv is not None or any(each is not None for _, each in outputs)

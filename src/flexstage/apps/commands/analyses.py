@@ -30,7 +30,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import Lumped, known_point
 from flexstage.show.command.displaced import Place, footing
-from flexstage.show.command.options import InputDensities, ModelName, Point, band_option, text_option
+from flexstage.show.command.options import ElasticModelName, InputDensities, ModelName, Point, band_option, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import band_limits, spectra
 from flexstage.show.document import response_body, stiffness_body
@@ -51,11 +51,11 @@ from flexstage.spatial.frame import COMPONENTS
 
 @command()
 def mapping(mechanism: Mechanism, *, model: ModelName = Model.IDEAL) -> CommandResult:
-    """Mappings R_a and R_s, mobility, redundancy.
+    """Compute the mappings R_a and R_s, mobility, redundancy.
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
 
-    With an elastic model, the elastic motion per stroke T too.
+    An elastic model adds T, the elastic motion per stroke.
     """
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     twist = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -82,14 +82,14 @@ def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
 def stiffness(
     mechanism: Lumped,
     *,
-    model: ModelName = Model.LUMPED,
+    model: ElasticModelName = Model.LUMPED,
     point: Point = PLATFORM,
-    load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: that of --point.")] = "",
+    load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: the point of --point.")] = "",
     place: Place,
 ) -> CommandResult:
-    """Compliance and stiffness of the platform.
+    """Compute compliance and stiffness of the platform.
 
-    6x6, by direction in the plane, by freedom of stages with fewer than six, and the centre of stiffness; strokes held. Mass at the point.
+    Prints the 6x6 matrices, stiffness by direction and by DOF, the centre of stiffness, and the mass. Actuators are fixed.
 
     With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
@@ -130,12 +130,12 @@ def _stiffness_tables(
 def lost_motion(
     mechanism: Lumped,
     *,
-    model: ModelName = Model.LUMPED,
+    model: ElasticModelName = Model.LUMPED,
     place: Place,
 ) -> CommandResult:
-    """Gain, loss and its budget by part, crosstalk, correction.
+    """Compute lost motion by part, crosstalk and correction.
 
-    What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
+    Prints transmission ratio, lost motion by part, parasitic motion, and the gains that correct the lost motion.
 
     With --at, --load, --fixed or --temperature: about that operating point. The ideal motion is that of the undeformed configuration.
     """
@@ -164,17 +164,16 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
 def modes(
     mechanism: Lumped,
     *,
-    model: ModelName = Model.LUMPED,
+    model: ElasticModelName = Model.LUMPED,
     view: Annotated[
         Path | None,
-        text_option("--view", "STAGE.HTML", "Write the stage in motion: a page that stands alone (.html), or a GLB file (.glb)."),
+        text_option("--view", "STAGE.HTML", "Animated stage: HTML page (.html) or GLB file (.glb)."),
     ] = None,
     place: Place,
 ) -> CommandResult:
-    """Natural frequencies, names and shapes.
+    """Compute natural frequencies, mode names and shapes.
 
-    Which modes are the platform's, which are local, and what share each has of its energy and compliance. --view shows them, no finite
-    elements needed.
+    Prints platform modes and local modes, with their shares of kinetic energy and compliance. --view writes an animation.
 
     With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
@@ -225,27 +224,28 @@ def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> 
 def response(
     mechanism: Lumped,
     *,
-    model: ModelName = Model.LUMPED,
+    model: ElasticModelName = Model.LUMPED,
     inputs: Annotated[
         list[str] | None,
-        text_option("--input", "NAME", "Input: stroke (B1), force (platform.fx) or ground motion (ground). Repeatable. Default: strokes."),
+        text_option("--input", "NAME", "Input: stroke (B1), force (platform.fx) or ground motion (ground). Default: strokes. Repeatable."),
     ] = None,
     outputs: Annotated[
         list[str] | None,
         text_option(
             "--output",
             "NAME",
-            "Output: motion (chuck.x), gauge (S1) or resultant (B4/pivot.mz). Repeatable. Default: platform and gauges.",
+            "Output: motion (chuck.x), gauge (S1) or resultant (B4/pivot.mz). Default: platform and gauges. Repeatable.",
         ),
     ] = None,
     band: Annotated[tuple[str, str] | None, band_option("1/50 of the first to twice the twelfth natural frequency")] = None,
     input_asd: InputDensities = None,
     place: Place,
 ) -> CommandResult:
-    """Frequency response of outputs to inputs.
+    """Compute frequency responses of outputs to inputs.
 
-    Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
-    over absolute motion of the ground. With --input-asd, the rms values of the outputs too.
+    Default: from strokes to platform motion and gauges.
+
+    With --input ground: the transmissibility. With --input-asd: also the rms values of the outputs.
 
     With --at, --load, --fixed or --temperature: about that operating point.
     """

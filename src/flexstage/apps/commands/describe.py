@@ -47,13 +47,13 @@ SCHEMA_FILE = "flexstage.schema.json"
 def new(
     target: Annotated[Path | None, typer.Argument(metavar="STAGE.TOML", help="File to write.", show_default=False)] = None,
     *,
-    case: Annotated[str, typer.Option(metavar="NAME", help="Shipped case to start from; --list shows them.")] = DEFAULT_CASE,
+    case: Annotated[str, typer.Option(metavar="NAME", help="Shipped case, see --list.")] = DEFAULT_CASE,
     case_parameter: Annotated[
         list[str] | None, text_option("--case-parameter", "NAME=VALUE", "Parameter of the case, e.g. long_arm=80mm. Repeatable.")
     ] = None,
-    listed: Annotated[bool, typer.Option("--list", help="List the shipped cases and stop.")] = False,
-    list_parameters: Annotated[bool, typer.Option("--list-parameters", help="List the parameters of the case and stop.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
+    listed: Annotated[bool, typer.Option("--list", help="List of the shipped cases.")] = False,
+    list_parameters: Annotated[bool, typer.Option("--list-parameters", help="List of the parameters of the case.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Permission to overwrite the file.")] = False,
 ) -> None:
     """Write a shipped case as a commented design file."""
     if listed or list_parameters:
@@ -95,7 +95,7 @@ def _heading(case: str, summary: str, target: str, stated: Mapping[str, str]) ->
 def check(design: Design, *, changes: Changes = None, json: Json = None) -> None:
     """Check a design file.
 
-    Every finding is told with the object, the numbers and what to do. Exit code 2 if there is any.
+    Prints every error with key, value and hint. Exit code 2 if there is an error.
 
     Also lists warnings and default values. Neither changes the exit code.
     """

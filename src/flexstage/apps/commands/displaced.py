@@ -52,19 +52,19 @@ from flexstage.spatial.frame import COMPONENTS
 def stroke(
     mechanism: Mechanism,
     *,
-    named: Annotated[str, text_option("--path", "NAME", "A path of the design, [paths.NAME]. Default: the first that it states.")] = "",
+    named: Annotated[str, text_option("--path", "NAME", "Path of the design, [paths.NAME]. Default: the first.")] = "",
     drive: Annotated[
-        str, text_option("--drive", "NAME", "What is driven: a coordinate, a stroke (B1), a force. Default: platform.x, without paths.")
+        str, text_option("--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: platform.x, without paths.")
     ] = "",
-    start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: at rest.")] = "",
-    end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: the actuator\'s stroke, 0.1 mm, 1 mrad.')] = "",
+    start: Annotated[str, text_option("--from", "VALUE", "First value of the drive. Default: at rest.")] = "",
+    end: Annotated[str, text_option("--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: the stroke, 0.1 mm or 1 mrad.')] = "",
     steps: Annotated[int | None, STEPS] = None,
     load: Load = None,
 ) -> CommandResult:
-    """Force, stiffness, parasitic motion, frequencies over a stroke.
+    """Compute force, stiffness and frequencies over a stroke.
 
-    At large displacements, under the stage's weight and the loads that are named: every point is an equilibrium, and its frequencies and
-    stiffness are those of the stage there. Strokes count from where the stage sags to.
+    Includes large displacements, weight and named loads. Every point is an equilibrium with its own frequencies and stiffness.
+    Displacements are relative to the loaded equilibrium position.
     """
     model = nonlinear(mechanism)
     elsewhere, loads = bool(drive or start or end), loads_of(model, load or ())
@@ -146,21 +146,21 @@ def buckle(
             "--scale-load",
             "NAME=VALUE",
             'Load that grows, e.g. "platform.fx=-20 N"; several grow in proportion. Repeatable. '
-            "Default: the weight at a stated operating point, else every load case.",
+            "Default: the weight at an operating point, else every load case.",
         ),
     ] = None,
     place: Place,
     post_buckling: Annotated[
         int, typer.Option("--post-buckling", metavar="N", min=0, help="Number of equilibria beyond the lowest critical load.")
     ] = 0,
-    branch: Annotated[BranchSide, typer.Option("--branch", help="Branch: along the buckling mode, or against it.")] = BranchSide.ALONG,
+    branch: Annotated[BranchSide, typer.Option("--branch", help="Direction of the buckling mode, or the opposite.")] = BranchSide.ALONG,
 ) -> CommandResult:
     """Find the load at which the stage buckles.
 
-    At large displacements: a limit point, a bifurcation, or an imperfect bifurcation. All other loads are constant, the weight too.
+    Includes large displacements. The result is a limit point, a bifurcation, or an imperfect bifurcation. All other loads are constant,
+    also the weight.
 
-    Without --scale-load and operating point: each load case (weight, stated forces, loads of paths), at rest and at all ends of paths
-    and strokes.
+    Without --scale-load and operating point: each load case, at rest and at all ends of paths and strokes.
     """
     cases = (_case(mechanism, place, scale_load or ()),) if scale_load or place.at or place.load or place.fixed else load_cases(mechanism)
     found = buckling_factors(mechanism, cases, temperature=place.warmth, demand=asked_factor(mechanism))
@@ -215,7 +215,7 @@ def misalign(
     mechanism: Mechanism,
     *,
     instance: Annotated[
-        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link on the ground. Default: each.")
+        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link to the ground. Default: each.")
     ] = "",
     rotation: Annotated[
         str, text_option("--rotation", "AXIS", "Axis of rotation in its own frame: x, y or z. Default: y; without --instance, all.")
@@ -228,13 +228,12 @@ def misalign(
     ] = "",
     steps: Annotated[int, STEPS] = 11,
 ) -> CommandResult:
-    """Compute internal loads of a misaligned, over-constrained stage.
+    """Compute loads of a misaligned, over-constrained stage.
 
-    An instance of a unit, or a link, is forced into a rotated or translated seat on the ground. Results: loads in all flexures,
-    frequencies over the misalignment, and the critical misalignment at which the stage buckles.
+    The fixed end of an instance or link is rotated or translated. Prints loads in all flexures, frequencies over the misalignment,
+    and the critical misalignment at which the stage buckles.
 
-    Without --instance: critical misalignment, load and stress of each instance, about all axes or the stated one. The report animates
-    the worst.
+    Without --instance: critical misalignment, load and stress of each instance, about all axes or the specified axis.
     """
     axis = _axis(rotation, translation)
     quantity = ANGLE if axis.startswith("r") else LENGTH

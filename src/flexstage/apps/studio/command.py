@@ -17,13 +17,13 @@ def studio(
     design: Design,
     *,
     port: Port = 0,
-    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the browser, or only tell the address.")] = True,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Browser window; --no-browser: address only.")] = True,
 ) -> None:
-    """Open a stage in the browser: change it, see what it does.
+    """Open a stage in the browser, and edit it.
 
-    The page is served to this computer alone, to whoever has the address that is told here; Ctrl+C ends it.
+    The page is served to this computer only. Its address contains a key. Ctrl+C ends the command.
 
-    A file with mistakes is opened too: they are shown at their lines.
+    A file with errors opens too: the errors are shown at their lines.
     """
 
     def started(url: str) -> None:

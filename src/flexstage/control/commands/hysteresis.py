@@ -29,11 +29,11 @@ def hysteresis(  # noqa: PLR0913 (its options)
         typer.Argument(help="File of the test: universal file, MAT, HDF5 or CSV.", metavar="RECORD", show_default=False),
     ],
     *,
-    volts: Annotated[str | None, text_option("--volts", "NAME", "Voltage channel. Default: the channel in volts.")] = None,
-    stroke: Annotated[str | None, text_option("--stroke", "NAME", "Stroke channel. Default: the channel in a length.")] = None,
+    volts: Annotated[str | None, text_option("--volts", "NAME", "Channel of the voltage. Default: the channel in V.")] = None,
+    stroke: Annotated[str | None, text_option("--stroke", "NAME", "Channel of the stroke. Default: the channel of a length.")] = None,
     step: Annotated[Path | None, text_option("--step", "RECORD", "Record of a voltage step, for creep.")] = None,
     limits: Annotated[
-        tuple[str, str] | None, text_option("--limits", "LOW HIGH", 'Voltage range of the stack, e.g. --limits "0 V" "1000 V".')
+        tuple[str, str] | None, text_option("--limits", "LOW HIGH", 'Voltage range of the stack, e.g. "0 V" "1000 V".')
     ] = None,
     units: Units = None,
     rate: Rate = None,
@@ -42,9 +42,9 @@ def hysteresis(  # noqa: PLR0913 (its options)
 ) -> CommandResult:
     """Identify the hysteresis of a stack.
 
-    From a record of voltage and stroke: an invertible Prandtl-Ishlinskii model, its size chosen on segments that are not fitted.
+    Fits an invertible Prandtl-Ishlinskii model to a record of voltage and stroke. Other parts of the record test it.
 
-    With the record of a voltage step, also creep.
+    A step record adds creep.
     """
     records = [record] if step is None else [record, step]
     between = None if limits is None else _volts(limits)

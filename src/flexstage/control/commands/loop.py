@@ -67,25 +67,23 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             "Exported file: plant.mat, controller.c, controller.fmu, stage.loop.fmu (whole loop), or with --tracking path.csv. Repeatable.",
         ),
     ] = None,
-    hardware: Annotated[
-        Path | None, text_option("--hardware", "FILE.c", "Write the controller for a processor of its own: FILE.c, FILE.h, FILE_test.c.")
-    ] = None,
+    hardware: Annotated[Path | None, text_option("--hardware", "FILE.c", "C code of the controller: FILE.c, FILE.h, FILE_test.c.")] = None,
     full: Full = False,
-    float32: Annotated[bool, typer.Option("--float32", help="32-bit numbers in the code of --hardware, instead of 64-bit.")] = False,
-    example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Write a commented set-up file to start from, and stop.")] = None,
+    float32: Annotated[bool, typer.Option("--float32", help="32-bit numbers in the code of --hardware.")] = False,
+    example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Commented set-up file to write, without a computation.")] = None,
 ) -> CommandResult | None:
     """Close the control loop of a stage.
 
-    Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
+    Tunes a controller, and prints bandwidth, stability margins, settling and positioning noise by source.
 
-    With nothing else given: the lumped model, a PI controller with notches, optimised within a margin of 6 dB, at 10 kHz, one
-    sample late. Where forces drive the stage, a PID controller. --quick tunes it without optimisation.
+    Default plant: the lumped model, 10 kHz sampling, one sample of delay. Default controller: PI with notch filters, or PID for
+    force-driven stages. The tuning is optimised within a margin of 6 dB; --quick omits the optimisation.
 
     With --at, --load, --fixed or --temperature: about that operating point.
 
-    With --record or --fea, the plant is the identified model of the test, or finite elements of the nominal stage to 1 %.
+    With --record, the plant is the identified model of the test. With --fea, it is finite elements of the nominal stage to 1 %.
 
-    Kinds side by side: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
+    Comparison: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
     """
     if example is not None:
         return _write_example(context.params["design"], example)

@@ -22,13 +22,12 @@ def serve(
     *,
     setup: Setup = None,
     port: Port = PORT,
-    realtime: Annotated[bool, typer.Option("--realtime/--no-realtime", help="Real time, or as fast as it is computed.")] = True,
+    realtime: Annotated[bool, typer.Option("--realtime/--no-realtime", help="Real time, or as fast as possible.")] = True,
     changes: Changes = None,
 ) -> None:
-    """Run a stage as a virtual controller that programs drive over TCP.
+    """Run a virtual controller of a stage over TCP.
 
-    The stage is under its loop, as flexstage loop simulates it. It speaks a part of the General Command Set 2.0 to this computer
-    alone (see the documentation for the commands); Ctrl+C ends it.
+    Simulates the loop of flexstage loop. Programs on this computer use a part of the General Command Set 2.0. Ctrl+C ends the command.
     """
     asked = LoopSetup() if setup is None else load_setup(setup)
     stage = StageController(open_design(design, changes), asked)

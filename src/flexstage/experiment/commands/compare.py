@@ -17,7 +17,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import Lumped, elastic_model
 from flexstage.show.command.models import Models
-from flexstage.show.command.options import FEA, ModelName
+from flexstage.show.command.options import FEA, ElasticModelName
 from flexstage.show.command.terminal import print_warning
 
 
@@ -27,16 +27,16 @@ def compare(
     mechanism: Lumped,
     *,
     record: Annotated[list[Path], RECORD],
-    model: ModelName = Model.LUMPED,
+    model: ElasticModelName = Model.LUMPED,
     fea: Annotated[bool, FEA] = False,
     texts: RecordTexts,
     excitation: Moved = None,
 ) -> CommandResult:
-    """Theory, FEA and experiment side by side.
+    """Compare theory, FEA and experiment.
 
-    Modes are paired by their shapes at the sensors with the names of the stage's gauges; repeated modes as a subspace.
+    Modes are paired by their shapes at the sensors, repeated modes as a subspace. Channels have the names of the stage's gauges.
 
-    FEA is shown where the cache holds all of it, else with --fea.
+    FEA is included if it is in the cache, or with --fea.
     """
     linear = elastic_model(mechanism, model)
     highest = platform_modes(mechanism, linear).highest

@@ -27,9 +27,7 @@ from flexstage.show.table import Table, result_table
 
 Records: TypeAlias = Annotated[
     list[Path],
-    typer.Argument(
-        help="Files of one test: universal files, MAT, HDF5 or CSV. Several are put together.", metavar="RECORD...", show_default=False
-    ),
+    typer.Argument(help="Files of one test: UFF, MAT, HDF5 or CSV. Repeatable.", metavar="RECORD...", show_default=False),
 ]
 
 
@@ -37,15 +35,15 @@ Records: TypeAlias = Annotated[
 def identify(
     records: Records,
     *,
-    stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Draw the shapes on this stage.")] = None,
+    stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Design file of the stage, for shapes.")] = None,
     texts: RecordTexts,
     excitation: Moved = None,
 ) -> CommandResult:
     """Find the modes in records of a test.
 
-    Frequencies, damping and shapes with 95 % intervals, from white or other noise at the inputs; nothing is picked by hand.
+    Prints frequencies, damping and shapes with 95 % intervals. The identification is automatic.
 
-    Bad channels are named and explained, and used only with --accept-fault.
+    Faulty channels are errors unless --accept-fault allows them.
     """
     texts = replace(texts, excitation=excitation)
     mechanism = None if stage is None else open_design(stage)

@@ -24,9 +24,9 @@ from flexstage.show.command.options import (
     Changes,
     Design,
     ElasticBodies,
+    ElasticModelName,
     GaugeNoise,
     GaugeResolution,
-    ModelName,
     Seed,
     band_option,
     output_option,
@@ -51,10 +51,12 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         text_option("--drive-rms", "VALUE", "Rms of the noise drive, e.g. 1um, 5V, 0.1A or 1N. Default: 1 % of each range."),
     ] = None,
     band: Annotated[tuple[str, str] | None, band_option("0 to 0.4 times the rate")] = None,
-    actuators: Annotated[list[str] | None, text_option("--actuator", "NAME", "Driven actuator. Repeatable. Default: all.")] = None,
+    actuators: Annotated[list[str] | None, text_option("--actuator", "NAME", "Driven actuator. Default: all. Repeatable.")] = None,
     amplifier: AmplifierValues = None,
     filter_order: Annotated[int, typer.Option("--filter-order", help="Order of the anti-alias filter (Butterworth); 0: none.")] = 8,
-    filter_corner: Annotated[str | None, text_option("--filter-corner", "VALUE", "Its corner. Default: 0.4 times the rate.")] = None,
+    filter_corner: Annotated[
+        str | None, text_option("--filter-corner", "VALUE", "Corner frequency of the anti-alias filter. Default: 0.4 times the rate.")
+    ] = None,
     gauge_noise: GaugeNoise = None,
     resolution: GaugeResolution = None,
     drift: Annotated[
@@ -64,22 +66,23 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         InputSignal,
         word_option("--input-signal", InputSignal, "Recorded input signal: amplifier output with the gauges' filter, or command."),
     ] = InputSignal.MONITOR,
-    delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="How much later gauges are recorded, e.g. 1ms.")] = "0 s",
+    delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="Delay of the recorded gauges, e.g. 1ms.")] = "0 s",
     input_quantity: Annotated[
         InputQuantity | None,
         word_option(
             "--input-quantity", InputQuantity, "Quantity of the recorded inputs. Default: the actuator's own, e.g. stroke or current."
         ),
     ] = None,
-    model: ModelName = Model.LUMPED,
+    model: ElasticModelName = Model.LUMPED,
     changes: Changes = None,
     elastic_bodies: ElasticBodies = False,
 ) -> None:
     """Test a stage on a virtual rig; write the record.
 
-    White noise in the actuators, through amplifier, stage, gauges with noise, drift and steps, anti-alias filter and sampling.
+    Simulates white noise at the actuators, amplifiers, the stage, gauges with noise, drift and quantisation, the anti-alias filter
+    and sampling.
 
-    Equal seeds give equal files. `flexstage identify` finds the modes in it as in any record.
+    The same seed writes the same file.
     """
     mechanism = with_elastic_bodies(open_design(design, changes, [("--output", output)]), chosen=elastic_bodies)
     values = Values()

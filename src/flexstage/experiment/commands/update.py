@@ -41,23 +41,23 @@ def update(  # noqa: PLR0913 (its options)
         text_option(
             "--prior",
             "[ADDRESS=]SHARE",
-            'Relative standard deviation known before, of all or of one: "5 %", "neck.thickness=2 %". Default: 10 %, assumed.',
+            'Prior relative standard deviation, e.g. "5 %" or "neck.thickness=2 %". Default: 10 %, assumed.',
         ),
     ] = None,
     model_error: Annotated[
-        str, typer.Option("--model-error", metavar="SHARE", help="Relative standard deviation of theory's frequencies.")
+        str, typer.Option("--model-error", metavar="SHARE", help="Relative standard deviation of theoretical frequencies.")
     ] = "0.1 %",
-    gain: Annotated[bool, typer.Option("--gain", help="Compare the static gains of gauges to strokes too.")] = False,
+    gain: Annotated[bool, typer.Option("--gain", help="Static gains from strokes to gauges.")] = False,
     gain_error: Annotated[
         str, typer.Option("--gain-error", metavar="SHARE", help="Relative standard deviation of gains: theory, gauges and drives.")
     ] = "0.1 %",
     texts: RecordTexts,
 ) -> CommandResult:
-    """Bring a stage's numbers to agree with a test.
+    """Update parameters of a stage from a test.
 
-    Bayesian least squares: values, standard deviations, correlations, and how well the test tells each number.
+    Uses Bayesian least squares. Prints values, standard deviations, correlations and the information of the test.
 
-    Writes a new design file with the values tagged; comments stay, and the file that was read stays as it is.
+    Writes a new design file with tagged values and all comments.
     """
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)

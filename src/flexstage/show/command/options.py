@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from functools import partial
 from pathlib import Path
@@ -31,9 +31,17 @@ def output_option(metavar: str, about: str) -> Any:
     return typer.Option("--output", "-o", metavar=metavar, help=about, show_default=False)
 
 
-def word_option(name: str, kind: type[Enum], about: str, *, otherwise: Mapping[str, str] = _NOTHING, show_default: bool = True) -> Any:
-    """A choice of a few words; `otherwise` maps likely wrong words to hints."""
-    words = [str(each.value) for each in kind]
+def word_option(
+    name: str,
+    kind: type[Enum],
+    about: str,
+    *,
+    words: Sequence[str] = (),
+    otherwise: Mapping[str, str] = _NOTHING,
+    show_default: bool = True,
+) -> Any:
+    """A choice of a few `words` (default: all of the kind); `otherwise` maps likely wrong words to hints."""
+    words = words or [str(each.value) for each in kind]
     return typer.Option(
         name,
         parser=_reader(name, kind, otherwise),
@@ -61,13 +69,16 @@ def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Cal
 Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]
 
 
-MODEL = word_option(
+_model_option = partial(
+    word_option,
     "--model",
     Model,
-    "Model of the stage: rigid bodies, axial springs, or lumped 6x6 hinges.",
+    "Model of the stage: rigid bodies (ideal), axial springs (mapped), or 6x6 hinges (lumped).",
     otherwise={"solid": "For solids, use flexstage solid or flexstage verify"},
 )
-ModelName: TypeAlias = Annotated[Model, MODEL]
+ELASTIC_MODEL = _model_option(words=("mapped", "lumped"))
+ModelName: TypeAlias = Annotated[Model, _model_option()]
+ElasticModelName: TypeAlias = Annotated[Model, ELASTIC_MODEL]
 
 Changes: TypeAlias = Annotated[
     list[str] | None,
@@ -82,7 +93,7 @@ ElasticBodies: TypeAlias = Annotated[
     bool, typer.Option("--elastic-bodies", help="Flexibility of bodies in the lumped model, estimated from their outlines.")
 ]
 
-Json: TypeAlias = Annotated[str | None, text_option("--json", "-|FILE", "Write the result as JSON: to stdout (-) or a file.")]
+Json: TypeAlias = Annotated[str | None, text_option("--json", "-|FILE", "JSON file of the result, or - for stdout.")]
 
 Csv: TypeAlias = Annotated[
     Path | None,
@@ -90,17 +101,15 @@ Csv: TypeAlias = Annotated[
         "--csv",
         metavar="FOLDER",
         callback=check_folder,
-        help="Write each table of the result as a CSV file into a folder: full precision, SI units.",
+        help="Folder for CSV files of all tables, in SI units.",
         show_default=False,
     ),
 ]
 
-Xlsx: TypeAlias = Annotated[
-    Path | None, text_option("--xlsx", "FILE", "Write the tables of the result as an Excel workbook: a sheet a table, SI units.")
-]
+Xlsx: TypeAlias = Annotated[Path | None, text_option("--xlsx", "FILE", "Excel workbook of all tables, in SI units.")]
 
 
-Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")]
+Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0: a free port.")]
 
 InputDensities: TypeAlias = Annotated[
     list[str] | None,
@@ -112,11 +121,12 @@ InputDensities: TypeAlias = Annotated[
 ]
 
 GaugeNoise: TypeAlias = Annotated[
-    str | None, text_option("--gauge-noise", "DENSITY", 'Noise density of the gauges, e.g. "0.1 nm/Hz^0.5". Default: that of the design.')
+    str | None,
+    text_option("--gauge-noise", "DENSITY", 'Noise density of the gauges, e.g. "0.1 nm/Hz^0.5". Default: the value of the design.'),
 ]
 
 GaugeResolution: TypeAlias = Annotated[
-    str | None, text_option("--resolution", "VALUE", "Resolution of the gauges; 0nm for none. Default: that of the design.")
+    str | None, text_option("--resolution", "VALUE", "Resolution of the gauges; 0nm for none. Default: the value of the design.")
 ]
 
 AmplifierValues: TypeAlias = Annotated[
@@ -124,12 +134,12 @@ AmplifierValues: TypeAlias = Annotated[
     text_option(
         "--amplifier",
         "VALUE",
-        "Amplifier bandwidth (500Hz), output resistance (50ohm) or maximum current (0.2A). Repeatable. Default: ideal.",
+        "Amplifier bandwidth (500Hz), output resistance (50ohm) or maximum current (0.2A). Default: ideal. Repeatable.",
     ),
 ]
 
 rate_option = partial(text_option, "--rate", "FREQUENCY", 'Sampling rate, e.g. "2 kHz".')
-band_option = partial(text_option, "--band", "LOW HIGH", 'Frequency band, e.g. --band "50 Hz" "400 Hz".')
+band_option = partial(text_option, "--band", "LOW HIGH", 'Frequency band, e.g. "50 Hz" "400 Hz".')
 temperature_option = partial(text_option, "--temperature", "VALUE", 'Uniform temperature change, e.g. "5 K".')
 parameters_option = partial(
     text_option, "--parameters", "ADDRESSES", 'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.'
@@ -137,23 +147,27 @@ parameters_option = partial(
 order_option = partial(typer.Option, "--order", max=5, help="Order of the elements.")
 modes_option = partial(typer.Option, "--modes", help="Number of lowest modes.")
 STEPS = typer.Option(
-    "--steps", metavar="N", min=2, help="Number of equilibria, both ends included. Default: that of a path, else 11.", show_default=False
+    "--steps",
+    metavar="N",
+    min=2,
+    help="Number of equilibria, both ends included. Default: the number of the path, else 11.",
+    show_default=False,
 )
 
 Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
 
 Full: TypeAlias = Annotated[bool, typer.Option("--full", help="All tables and notes, instead of the short form.")]
 
-FEA = typer.Option("--fea", help="Finite elements of the stage, computed unless they are in the cache.")
+FEA = typer.Option("--fea", help="Finite elements, from the cache or computed.")
 
 Point: TypeAlias = Annotated[
     str, typer.Option("--point", metavar="POINT", help="Point whose displacement is computed: the platform or a named point.")
 ]
 
-Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "Write a self-contained HTML report with pictures.")]
+Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "HTML report with pictures.")]
 
 Study: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
 
-Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Go on with a results file that is not complete.")]
+Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Continuation of an incomplete results file.")]
 
-Workers: TypeAlias = Annotated[int | None, text_option("--workers", "N", "Processes. Default: one a core.")]
+Workers: TypeAlias = Annotated[int | None, text_option("--workers", "N", "Number of processes. Default: one per core.")]

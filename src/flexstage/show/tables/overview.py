@@ -263,7 +263,7 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
       Look at frequency.platform.1, 106.01 Hz (at least 100 Hz, +6.01 %): mode 1, tilt.
     """
     doubts = () if analysis.ends is None else analysis.ends.warnings
-    more = "".join(f"\n  Beware: {each}" for each in doubts) + (
+    more = "".join(f"\n  warning: {each}" for each in doubts) + (
         "" if whole else "\n  All tables: --full. With pictures, in one page: --report FILE."
     )
     if not analysis.verdicts:

@@ -31,18 +31,18 @@ from flexstage.solid.results.read import read_solid, solids
 def cad(
     design: Design,
     *,
-    output: Annotated[Path | None, output_option("STAGE.STEP", "Write the named solids as a STEP assembly.")] = None,
-    mesh: Annotated[Path | None, text_option("--mesh", "STAGE.VTU", "Mesh the stage and write the tetrahedra as VTU.")] = None,
-    gltf: Annotated[Path | None, text_option("--gltf", "STAGE.GLB", "Read the stage as solids; write its modes as animations.")] = None,
+    output: Annotated[Path | None, output_option("STAGE.STEP", "STEP file of the named solids.")] = None,
+    mesh: Annotated[Path | None, text_option("--mesh", "STAGE.VTU", "VTU file of the mesh.")] = None,
+    gltf: Annotated[Path | None, text_option("--gltf", "STAGE.GLB", "GLB file of animated modes.")] = None,
     order: Annotated[int, order_option(min=1)] = 2,
     modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
 ) -> None:
     """Write a stage as solids.
 
-    One STEP assembly of named solids with materials; the mesh; the modes in motion. --order is for --mesh and --gltf, --modes for --gltf.
+    Output: a STEP assembly of named solids, the mesh, or animated modes. Use --order with --mesh or --gltf, --modes with --gltf.
 
-    Outlines are checked against each other first: what does not meet, overlaps or nearly coincides is told, and keeps it from being meshed.
+    Solids that do not meet, overlap or nearly coincide are errors.
     """
     if output is None and mesh is None and gltf is None:
         raise refuse("--output", "missing", "Use -o stage.step, --mesh stage.vtu or --gltf stage.glb")
@@ -56,19 +56,19 @@ def state(
     design: Design,
     *,
     material: Annotated[
-        str | None, typer.Option("--material", help="Material of the design; without it the only one.", show_default=False)
+        str | None, typer.Option("--material", help="Material of the design. Default: the only material.", show_default=False)
     ] = None,
-    body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body the outline is for.")] = "platform",
+    body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body of the outline.")] = "platform",
     solid: Annotated[
         str | None,
-        typer.Option("--solid", metavar="NAME", help="Solid of an assembly, by its name or its place: #2.", show_default=False),
+        typer.Option("--solid", metavar="NAME", help="Solid of an assembly, by name or number, e.g. #2.", show_default=False),
     ] = None,
 ) -> None:
-    """State a STEP file as an outline.
+    """Import a STEP file as an outline of a body.
 
     Prints the table for the design file: file, digest, size, mass, centre of mass and inertia.
 
-    Rigid models take what is stated; the solid model draws the file, and holds what is stated to it.
+    Rigid models use the specified values. The solid model uses the geometry of the file, and compares the values with it.
     """
     mechanism = load(design)
     chosen = _material(mechanism, material)
@@ -82,9 +82,9 @@ def state(
 
 def superelement(
     design: Design,
-    solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link that the solid is, or is part of.", show_default=False)],
+    solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link of the solid.", show_default=False)],
     *,
-    output: Annotated[Path, output_option("FRAME.NPZ", "Write stiffness and mass as an NPZ file.")],
+    output: Annotated[Path, output_option("FRAME.NPZ", "NPZ file of stiffness and mass.")],
     order: Annotated[int, order_option(min=1)] = 3,
     modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
@@ -94,7 +94,7 @@ def superelement(
     Writes stiffness and mass over its ports and fixed-interface modes. Prints the table of the part for a design file in the folder of
     the matrices.
 
-    A body counts with the links that are one solid with it; its ports are the faces where that ends.
+    A body includes the links that are one solid with it. Its ports are the faces to other links.
     """
     mechanism = open_design(design, changes, [("--output", output)])
     require_solver()

@@ -73,16 +73,14 @@ class Scope(Enum):
     STAGE = "stage"
 
 
-Accuracy: TypeAlias = Annotated[
-    str, typer.Option("--accuracy", metavar="SHARE", help="Relative error to reach in stiffness, gain and frequency.")
-]
+Accuracy: TypeAlias = Annotated[str, typer.Option("--accuracy", metavar="SHARE", help="Relative error of stiffness, gain and frequency.")]
 Order: TypeAlias = Annotated[
     int | None,
     order_option(min=2, help="Order of the elements. Default: raised until the accuracy is met.", show_default=False),
 ]
 Memory: TypeAlias = Annotated[
     str | None,
-    text_option("--memory", "SIZE", 'Memory to plan with, e.g. "8 GB". Default: 90 % of what the machine has left.'),
+    text_option("--memory", "SIZE", 'Memory limit, e.g. "8 GB". Default: 90 % of the free memory.'),
 ]
 
 
@@ -129,11 +127,11 @@ def solid(
     ] = Scope.STAGE,
     options: SolidOptions,
 ) -> CommandResult:
-    """Read a stage as elastic solids, by finite elements.
+    """Analyse a stage as elastic solids by finite elements.
 
-    hinge: the 6x6 of every hinge. unit: stiffness, gain, lost motion and stress of every unit. stage: stiffness, modes and stress.
+    Scope hinge: the 6x6 of every hinge. Scope unit: stiffness, lost motion and stress. Scope stage: stiffness, modes and stress.
 
-    What was reduced once is kept and not computed again.
+    Reduced parts are kept in the cache.
     """
     resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
@@ -156,10 +154,10 @@ def verify(
     *,
     options: SolidOptions,
 ) -> CommandResult:
-    """Compare theory with finite elements: which to trust?
+    """Compare theory with finite elements.
 
-    Hinges, units and the whole stage: the paper's springs, the lumped model, the lumped model with calibrated hinges, and FEA with its
-    own error. Rows that calibrated parts touch are not independent of FEA.
+    Compares hinges, units and the whole stage by axial springs, lumped model, calibrated lumped model and FEA.
+    Rows with calibrated parts are not independent of FEA.
     """
     resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
@@ -207,9 +205,9 @@ def calibrate(
     output: Annotated[Path, output_option("STAGE.TOML", "Design file to write.")],
     options: SolidOptions,
 ) -> CommandResult:
-    """Give hinges their 6x6 from finite elements.
+    """Calibrate the 6x6 of hinges by finite elements.
 
-    The lumped model of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
+    Writes a design file whose lumped model has the accuracy of FEA in its hinges. Comments and the drawn hinges stay.
     """
     resolution = options.resolution
     text = read_text(design)

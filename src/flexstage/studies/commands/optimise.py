@@ -31,9 +31,9 @@ def optimise(
 ) -> CommandResult:
     """Find the best design within ranges and limits.
 
-    By exact derivatives, from several starts: what binds, what it costs, values that can be made. Two objectives: a front.
+    Uses exact derivatives and several starts. Prints active constraints, their multipliers and rounded values. Two objectives: a front.
 
-    Limits that contradict each other are named (exit code 2). Interrupted, it ends with the best design so far.
+    Contradictory limits are an error (exit code 2). An interrupted search ends with the best design found.
     """
     asked = load_study(study)
     definition = load_optimisation(asked, str(study))

@@ -27,15 +27,15 @@ from flexstage.studies.sweeps.show.tables import study_tables
 def sweep(
     study: Study,
     *,
-    output: Annotated[Path, output_option("RESULTS.H5", "Results file to write: every design.")],
+    output: Annotated[Path, output_option("RESULTS.H5", "Results file of all designs.")],
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
-    """Compute many designs; show what varies with what.
+    """Compute many designs of a study.
 
-    Grid, Latin hypercube, Sobol sequence, or Saltelli's plan for Sobol indices, as the study's file says.
+    The study file selects a grid, a Latin hypercube, a Sobol sequence, or Saltelli's plan for Sobol indices.
 
-    Interrupted at any moment, --resume goes on without loss or repetition.
+    --resume continues an interrupted sweep.
     """
     definition = load_study(study)
     with _resumable(output), progress_bar() as shown:

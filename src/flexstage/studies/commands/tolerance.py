@@ -23,15 +23,15 @@ from flexstage.studies.tolerances.show.tables import tolerance_tables
 def tolerance(
     study: Study,
     *,
-    output: Annotated[Path | None, output_option("RESULTS.H5", "Results file to write: every copy.")] = None,
+    output: Annotated[Path | None, output_option("RESULTS.H5", "Results file of all samples.")] = None,
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
-    """Scatter dimensions and materials: yield, allowances.
+    """Analyse tolerances: yield and allowances.
 
-    The study's file says in [scatter] what deviates, and how far.
+    The table [scatter] of the study file lists the deviations.
 
-    Told are distributions, the yield line by line and together, what does it, what each dimension may deviate, and crosstalk.
+    Prints distributions, yield, variance contributions, allowable tolerances and crosstalk.
     """
     if resume and output is None:
         raise refuse("--resume", "no results file is named", "Name it with --output")
