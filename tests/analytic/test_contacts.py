@@ -161,7 +161,7 @@ def test_balls_that_leave_their_seats_are_told(stage, what):
         ({"preload": -1.0}, "parts.ball.preload: found -1 N"),
         ({"half_angle": None}, "parts.ball.half_angle: half angle of the groove missing"),
         ({"half_angle": 2.0}, "parts.ball.half_angle: found"),
-        ({"seat": Seat.FLAT}, "parts.ball.half_angle: it is that of a groove"),
+        ({"seat": Seat.FLAT}, "parts.ball.half_angle: only a groove has a half angle"),
         ({"counter": "steal"}, 'parts.ball.counter: there is no material "steal"'),
     ],
 )
