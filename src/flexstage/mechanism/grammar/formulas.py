@@ -257,12 +257,13 @@ def spelling_findings(name: str) -> Iterator[Finding]:
 
 
 def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors for unused named numbers.
+    """Return errors for named numbers unused in formulas and requirements.
 
     >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
     numbers.arm: no formula uses it. Use it in a formula, or remove it.
     """
     used = {name for text in mechanism.formulas.values() for name in parse_expression(text).names}
+    used |= {key.removeprefix(PREFIX) for key in mechanism.requirements}
     for name in mechanism.numbers:
         if name not in used:
             yield Finding(PREFIX + name, "no formula uses it", "Use it in a formula, or remove it")

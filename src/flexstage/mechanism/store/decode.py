@@ -156,7 +156,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
         return reader.note(missing)  # their kinds are unknown, and so other errors are irrelevant
     try:
-        raw = _with_likes(reader, raw, _catalogue(raw.get(CATALOGUE), files.where))
+        raw = _with_likes(reader, raw, catalogue_of(raw.get(CATALOGUE), files.where))
     except DesignError as error:
         return reader.note(error.findings)
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES, CATALOGUE)}
@@ -197,8 +197,8 @@ def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
             yield key, value
 
 
-def _catalogue(name: Any, where: str) -> Catalogue:
-    """The shipped catalogue extended by the user's file of that name, from the folder of the design file."""
+def catalogue_of(name: Any, where: str) -> Catalogue:
+    """Return the shipped catalogue extended by the user's file of that name, from the folder of the design file."""
     if name is None:
         return shipped_catalogue()
     if not isinstance(name, str):
