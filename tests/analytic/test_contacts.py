@@ -158,11 +158,11 @@ def test_balls_that_leave_their_seats_are_told(stage, what):
     ("changed", "what"),
     [
         ({"preload": None}, "parts.ball.preload: preload missing: a contact without preload has no stiffness"),
-        ({"preload": -1.0}, "parts.ball.preload: found -1 N"),
+        ({"preload": -1.0}, "parts.ball.preload: must be greater than 0 N (got -1 N)"),
         ({"half_angle": None}, "parts.ball.half_angle: half angle of the groove missing"),
-        ({"half_angle": 2.0}, "parts.ball.half_angle: found"),
+        ({"half_angle": 2.0}, "parts.ball.half_angle: must be greater than 0 and less than 90 deg (got 114.592 deg)"),
         ({"seat": Seat.FLAT}, "parts.ball.half_angle: only a groove has a half angle"),
-        ({"counter": "steal"}, 'parts.ball.counter: there is no material "steal"'),
+        ({"counter": "steal"}, 'parts.ball.counter: unknown material "steal"'),
     ],
 )
 def test_bad_contacts_are_told(changed, what):

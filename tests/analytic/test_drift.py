@@ -43,7 +43,7 @@ def test_a_bar_grows_piece_by_piece():
     assert found.taken["platform"] == "aluminium, of its solids"
     shown = drift_table(drift(bar(), lumped(bar()), ground="invar", datum=(0.01, 0.0, 0.0)))
     assert shown.texts()[1][:2] == ["platform.x [nm]", "1090"]  # per K, without the 10 mm of invar
-    assert "its point (10, 0, 0) mm stays" in shown.notes[0]
+    assert "its point (10, 0, 0) mm is fixed" in shown.notes[0]
 
 
 def test_a_still_ground():
@@ -101,7 +101,7 @@ def test_what_is_not_stated_is_named():
     with pytest.raises(fs.DesignError) as told:
         expansion(stage)
     assert [finding.where for finding in told.value.findings] == ["materials.steel", "parts.stack"]
-    with pytest.raises(fs.DesignError, match="nearest name is steel"):
+    with pytest.raises(fs.DesignError, match="Use steel"):
         expansion(stage, ground="stele")
 
 

@@ -260,4 +260,5 @@ def test_the_report_shows_the_reach():
     shown = workspace_section(analyse(stage(LIMITED)))
     assert shown is not None
     assert shown.title == "Force workspace"
-    assert [each.title for each in shown.blocks] == ["Reach", "Holding the reach"]
+    compared = ["Drive force per displacement, compared with the ideal guide", "Drive force by flexure"]
+    assert [each.title for each in shown.blocks] == ["Reach", "Coil inputs at the travel", *compared]

@@ -295,7 +295,7 @@ def test_a_unit_like_another_follows_it_and_files_keep_the_relation():
 @pytest.mark.parametrize(
     ("like", "said"),
     [
-        ("iner", 'units.outer.like: there is no unit "iner". The nearest name is inner'),
+        ("iner", 'units.outer.like: unknown unit "iner". Use inner'),
         ("outer", "units.outer.like: circular reference."),
     ],
 )
@@ -346,7 +346,7 @@ def strut(**place):
         ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.031)}, "got 31 mm, expected the length of part wire, 30 mm"),
         ({"start": (0.0, 0.0, 0.0)}, "links.strut: to missing."),
         ({"at": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.03)}, "both at and to specified"),
-        ({"at": (0.0, 0.0, 0.0)}, 'along missing. Write for example along = "x"'),
+        ({"at": (0.0, 0.0, 0.0)}, 'along missing. Use e.g. along = "x"'),
         ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.0)}, "got 0 mm, expected the length of part wire, 30 mm"),
     ],
 )

@@ -424,7 +424,7 @@ def test_mass_on_some_directions_alone_is_told(tmp_path):
 
 
 FILES = {
-    "missing": (lambda path: path.unlink(), "there is no such file"),
+    "missing": (lambda path: path.unlink(), "file not found"),
     "truncated": (lambda path: path.write_bytes(path.read_bytes()[:5000]), "it cannot be read as an NPZ file"),
     "damaged": (lambda path: path.write_bytes(path.read_bytes()[:3000] + bytes(200) + path.read_bytes()[3200:]), ""),
     "of text": (lambda path: path.write_text("stiffness"), "it cannot be read as an NPZ file"),

@@ -28,7 +28,7 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     ],
 )
 def test_a_text_is_no_number(made):
-    with pytest.raises(fs.DesignError, match=r"found the text '.*', expected a number"):
+    with pytest.raises(fs.DesignError, match=r"must be a number \(got the text '.*'\)"):
         made()
 
 

@@ -23,12 +23,13 @@ from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.small import SmallMotion, small_motion
 from flexstage.analysis.workspace.stops import with_stops
-from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
+from flexstage.analysis.workspace.strength import FROM_ZERO, HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
+from flexstage.analysis.workspace.wrench import Command
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.lazy import Late
-from flexstage.base.number import Array
+from flexstage.base.number import Array, stack
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.design import design
 from flexstage.mechanism.geometry.outline import outlines
@@ -194,7 +195,22 @@ class Bench:
     @cached_property
     def stress(self) -> HingeStress:
         """Stress of hinges over all strokes and forces, stress-free at zero voltage."""
-        return hinge_stress(self.mechanism, self.model, self._loaded)
+        condition = "of all strokes and forces (coils at peak current)" if self.assembly.thrusts else FROM_ZERO
+        return hinge_stress(self.mechanism, self.model, self._loaded, condition=condition)
+
+    @cached_property
+    def stress_at_strokes(self) -> HingeStress:
+        """Stress of hinges over the box of required strokes, from zero voltage."""
+        box = {name: value for name, value in self.box().items() if value > 0.0}
+        start = np.zeros(len(self.limits.actuators)) if self.limits.zero is None else -self.limits.zero
+        mapping = self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
+        known = dict(zip(self.limits.actuators, np.moveaxis(start, -1, 0), strict=True))
+        start = stack([known.get(name, 0.0) for name in mapping.rows])
+        for name in box.keys() - set(mapping.columns):
+            raise refuse(f"stroke.{name}", "no actuator moves the platform along it", f"Require strokes along {', '.join(mapping.columns)}")
+        half = stack(list(box.values()))
+        limits, command = StrokeLimits(tuple(box), -half, half), Command(mapping, start)
+        return hinge_stress(self.mechanism, self.model, limits, command=command, condition="of the required strokes")
 
     @cached_property
     def _loaded(self) -> StrokeLimits:

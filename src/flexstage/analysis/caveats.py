@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.measures import drift
 from flexstage.analysis.assessment.requirements import requirements
+from flexstage.analysis.linear_statics.body_effect import body_effects, body_findings
 from flexstage.analysis.loaded.course import path_findings
 from flexstage.analysis.loaded.seating import seating, seating_findings
 from flexstage.analysis.loaded.standing import drawn, kinematics, load_factors, standing
@@ -21,7 +22,7 @@ from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
-from flexstage.base.finding import DesignError, DesignWarning, Finding
+from flexstage.base.finding import DesignError, DesignWarning, Finding, name_first
 from flexstage.base.number import stack
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER
@@ -37,6 +38,7 @@ from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.mechanism.geometry.outline import outlines
 from flexstage.mechanism.grammar.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
+from flexstage.models.flexible_bodies import body_flexibilities
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
 from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
@@ -78,8 +80,8 @@ def caveats(mechanism: Mechanism) -> Caveats:
     """Return warnings and defaults of a description. Cached for the last descriptions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> caveats(double_triangle()).warnings
-    ()
+    >>> [each.where for each in caveats(double_triangle()).warnings]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     """
     return Caveats(design_warnings(mechanism), defaults(mechanism))
 
@@ -96,6 +98,7 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
         *_sticking(mechanism),
         *_lossless(mechanism),
         *_ground_default(mechanism),
+        *_rigid_bodies(mechanism),
     )
 
 
@@ -172,6 +175,14 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
         )
 
 
+def _rigid_bodies(mechanism: Mechanism) -> Iterator[Default]:
+    """Bodies that are rigid as their flexibility has no estimate, by reason."""
+    reasons = body_flexibilities(mechanism).reasons
+    for reason in dict.fromkeys(reasons.values()):
+        names = name_first([name for name, each in reasons.items() if each == reason])
+        yield Default(names, f"it is taken as rigid, its flexibility is not estimated: {reason}", "Compare with flexstage verify", _STILL)
+
+
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
     """Stacks that links use, by the name of their part."""
     used = {link.link.part for link in expand(mechanism).links.values()}
@@ -186,8 +197,8 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     An overridden part is named by its link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> design_warnings(double_triangle())
-    ()
+    >>> [each.where for each in design_warnings(double_triangle())]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     """
     factors = load_factors(mechanism)
     return (
@@ -202,6 +213,7 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         *_large_motions(mechanism),
         *contact_findings(mechanism),
         *_room(mechanism),
+        *_flexible_bodies(mechanism),
         *unused_findings(mechanism),
     )
 
@@ -281,6 +293,14 @@ def _overload_findings(mechanism: Mechanism) -> Iterator[Finding]:
             yield from judged(mechanism, drawn(mechanism))
 
 
+def _flexible_bodies(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Rigid bodies with a significant flexibility; none if the lumped or the ideal model is refused."""
+    try:
+        return tuple(body_findings(body_effects(mechanism, drawn(mechanism), kinematics(mechanism))))
+    except DesignError:
+        return ()
+
+
 def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
     stress = hinge_stress(mechanism, model, StrokeLimits((), np.zeros(0), np.zeros(0)))
     safety = np.nan_to_num(np.real(stress.safety).reshape(-1, len(stress.links))[0], nan=np.inf)
@@ -354,8 +374,8 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     `severity` of a finding distinguishes them. An empty tuple means that the stage has neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> check(double_triangle())
-    ()
+    >>> [finding.where for finding in check(double_triangle())]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     >>> [finding.severity.value for finding in check(Mechanism("empty"))]
     ['error']
     """

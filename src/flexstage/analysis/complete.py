@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.budget import budget
 from flexstage.analysis.assessment.error_budget import ErrorBudget
-from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.assessment.judge import bench_of, judge
 from flexstage.analysis.assessment.measures import stroke
 from flexstage.analysis.assessment.requirements import Sense, Verdict, asked_factor, requirements
 from flexstage.analysis.attempt import Attempts
@@ -18,6 +18,7 @@ from flexstage.analysis.dynamics.modes import Modes, modes
 from flexstage.analysis.dynamics.response import response, transmissibility
 from flexstage.analysis.linear_statics.deflection import Deflection, deflection
 from flexstage.analysis.linear_statics.drift import Drift, drift
+from flexstage.analysis.linear_statics.drive_force import DriveForce, drive_force
 from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
@@ -28,6 +29,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.force_workspace import ForceWorkspace
 from flexstage.analysis.workspace.force_workspace import force_workspace as reach_of
 from flexstage.analysis.workspace.small import SecondOrder, second_order
+from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.arguments import check_arguments
@@ -67,6 +69,7 @@ class Analysis(InNotebook):
     the required strokes, or the available ones. `ends` has critical load factors at the ends of the paths, up to the required factor; None
     without paths. The error budget is for the required strokes, or all single-axis strokes at once, and one kelvin. `freedoms` (stiffness
     along ideal motions and constraints; None for six ideal motions) and `mass` of the platform belong to the statics.
+    `stress` is at the required strokes, or of force-driven stages without them at peak current.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("an analysis", "fs.analyse(stage)")
@@ -93,6 +96,8 @@ class Analysis(InNotebook):
     loaded: LoadEffect | None = None
     second_order: SecondOrder | None = None
     ends: load_cases.CaseFactors | None = None
+    stress: HingeStress | None = None
+    drive_force: DriveForce | None = None
 
     @property
     def felt(self) -> LinearModel | None:
@@ -140,7 +145,8 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
     >>> round(float(analyse(double_triangle(), Model.MAPPED).modes.frequencies[0]), 2)
     110.91
     """
-    verdicts = judge(mechanism)
+    bench = bench_of(mechanism)
+    verdicts = judge(mechanism, bench)
     kinematics = ideal(mechanism)
     linear, loading = read(mechanism, model), load_effect(mechanism) if model is Model.LUMPED else None
     weighed, linked = (linear, linear) if loading is None or loading.model is None else (loading.model, loading.links)
@@ -158,6 +164,11 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         return units(mechanism) if whole or not kinematics.mapping.rows else None  # requires strokes
 
     forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
+    pushed = (
+        None
+        if forced is None
+        else attempt.of_ground("force_workspace", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known))
+    )
     stiff = attempt.of_ground("statics", weighed, _RIGID, statics)
     drifted = attempt.of_ground("drift", linked if model is Model.LUMPED else None, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
@@ -177,14 +188,18 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         error_budget=attempt.of_ground("error_budget", hinged, _UNLUMPED, lambda _: _errors(mechanism, command, reach, drifted)),
         units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: alone()),
         verdicts=verdicts,
-        force_workspace=None
-        if forced is None
-        else attempt.of_ground("force_workspace", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
+        force_workspace=pushed,
+        drive_force=None
+        if pushed is None or hinged is None
+        else attempt.of("drive_force", lambda: drive_force(kinematics, hinged, pushed)),
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
         mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
         loaded=loading,
         second_order=second_order(mechanism, kinematics, command if command or reach is None else reach.command),
         ends=attempt.of_ground("ends", hinged, _UNLUMPED, lambda _: _ends(mechanism)) if mechanism.paths else None,
+        stress=attempt.of("stress", lambda: bench.stress_at_strokes if bench.command else bench.stress)
+        if model is Model.LUMPED and (bench.command or forced is not None)
+        else None,
         missing=Table(attempt.missing),
     )
 

@@ -11,6 +11,6 @@ class Trust(Enum):
     DEPENDENT = "not independent"
     EITHER = "they agree"
     UNCLEAR = "FEA too coarse to tell"
-    THEORY = "theory will do"
+    THEORY = "theory suffices"
     CALIBRATED = "calibrated theory"
     FEA = "FEA"

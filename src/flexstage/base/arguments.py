@@ -21,7 +21,7 @@ from typing import Annotated, Any, ClassVar, ParamSpec, TypeAlias, TypeVar, get_
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, list_choices, refuse
 from flexstage.base.number import Table, freeze
 from flexstage.base.units.quantity import COMPLIANCE_MATRIX, DIRECTION, DIRECTIONS, STIFFNESS_MATRIX, Bound
 
@@ -63,9 +63,9 @@ class MismatchError(Exception):
         """Return the error of a field or parameter.
 
         >>> str(MismatchError(3.0, "a text", "Give a str").refusal("Leaf.material"))
-        'Leaf.material: found 3.0, expected a text. Give a str.'
+        'Leaf.material: must be a text (got 3.0). Give a str.'
         """
-        return refuse(where + self.place, f"found {_shown(self.value)}, expected {self.expected}", self.advice)
+        return refuse(where + self.place, f"must be {self.expected} (got {_shown(self.value)})", self.advice)
 
 
 class CheckedFields:
@@ -99,7 +99,7 @@ def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
     2.0
     >>> check_arguments(bend)("ab")
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: bend: ends: found the text 'ab', expected several values. Give a tuple or a list of them.
+    flexstage.base.finding.DesignError: bend: ends: must be several values (got the text 'ab'). Give a tuple or a list of them.
     """
 
     @functools.wraps(function)
@@ -271,7 +271,7 @@ def _word(node: Any, value: Any) -> Any:
 
 def _no_word(value: Any, words: list[str]) -> MismatchError:
     near = difflib.get_close_matches(str(value)[:80], words, n=1, cutoff=0.0)
-    return MismatchError(value, f"one of {', '.join(words)}", f'Write for example "{near[0]}"')
+    return MismatchError(value, list_choices(words), f'Use e.g. "{near[0]}"')
 
 
 def _text(value: Any) -> Any:
@@ -326,7 +326,7 @@ def _as_float(value: Any) -> float:
 
 
 def _no_number(value: Any) -> MismatchError:
-    advice = "Write a number in SI units, for example 0.4 * fs.mm; texts with units stand in design files (fs.load)"
+    advice = "Use a number in SI units, e.g. 0.4 * fs.mm; texts with units are for design files (fs.load)"
     return MismatchError(value, "a number", advice if isinstance(value, str) else "Give a number or an array in SI units")
 
 

@@ -22,7 +22,7 @@ def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
     """
     stand_ins = {name: part.replaces for name, part in mechanism.parts.items() if isinstance(part, ComplianceMatrix) and part.replaces}
     require(
-        Finding(f"parts.{name}.replaces", f'there is no part "{kept}"', "Keep the drawn part that was calibrated in the file")
+        Finding(f"parts.{name}.replaces", f'unknown part "{kept}"', "Keep the drawn part that was calibrated in the file")
         for name, kept in stand_ins.items()
         if kept not in mechanism.parts
     )

@@ -115,7 +115,7 @@ class Material(Description):
         if self.young is None or (self.poisson is None and self.shear_modulus is None):
             missing, example = ("poisson", "poisson = 0.3") if self.young is not None else ("young", 'young = "200 GPa"')
             what = "elastic constants incomplete (expected young and one of poisson and shear_modulus, or c11, c12 and c44)"
-            yield Finding(missing, what, f"Write for example {example}")
+            yield Finding(missing, what, f"Use e.g. {example}")
         elif self.shear_modulus is not None:
             found = np.real(self.young) / (2.0 * np.real(self.shear_modulus)) - 1.0
             apart = 0.0 if self.poisson is None else np.abs(found - np.real(self.poisson)) / (1.0 + np.real(self.poisson))

@@ -92,9 +92,7 @@ def _missing_findings(path: Path, names: tuple[str, ...], found: Mapping[str, Ma
     for key, name in zip(("stiffness", "mass", "damping"), names, strict=False):
         if name not in found:
             there = ", ".join(list(found)[:8]) or "no array of numbers"
-            yield Finding(
-                f"arrays.{key}", f'{path.name} has no array "{name}"; it has {there}', f'Write for example arrays = {{ {key} = "..." }}'
-            )
+            yield Finding(f"arrays.{key}", f'{path.name} has no array "{name}"; it has {there}', f'Use e.g. arrays = {{ {key} = "..." }}')
 
 
 def _plain(path: Path, name: str, matrix: MatrixLike) -> MatrixLike:

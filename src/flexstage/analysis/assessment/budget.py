@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from flexstage.analysis.assessment.error_budget import SOURCES, STEPS, ErrorBudget, command_columns, command_strokes
+from flexstage.analysis.assessment.error_budget import NOISES, PARASITIC, STEPS, ErrorBudget, command_columns, command_strokes
+from flexstage.analysis.attempt import Attempts
+from flexstage.analysis.dynamics.random_response import Spectrum, random_response
+from flexstage.analysis.dynamics.response import default_frequencies
 from flexstage.analysis.linear_statics.drift import Drift, drift
 from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.loaded.load_effect import felt_links
@@ -17,12 +21,15 @@ from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.assembly.expand import Assembly, expand
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.finite import design_shape
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
+
+_NO_DENSITY = "no amplitude density is given (--input-asd)"
 
 
 @check_arguments
@@ -34,6 +41,8 @@ def budget(
     temperature: Number | None = 0.0,
     drifted: Drift | None = None,
     coverage: float = 3.0,
+    noise: Mapping[str, Spectrum] | None = None,
+    band: tuple[float, float] | None = None,
 ) -> ErrorBudget:
     """Compute the error budget at a platform point for a box of commands (half widths [m, rad]) and a temperature change [K].
 
@@ -45,6 +54,10 @@ def budget(
     V^+ T)^-1 R_a xi, only the residual T a - V xi remains, as crosstalk. Linear map: finite minus linear kinematics at the corners. Noise:
     `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Stepping actuators: half a step of each
     in the same direction, in a separate column (uniformly distributed, its standard deviation is step/sqrt(12)). Largest absolute values.
+
+    Of a force-driven stage in open loop: forces u = (V^+ C)^+ xi by the static gain C of the elastic model, in the place of lost motion,
+    crosstalk and linear map the parasitic motion C u - V xi. `noise` are one-sided densities of actuator inputs (current, force, stroke) or
+    wrenches, and of the ground's motion; rms values over the `band` [Hz] (absent: that of `response`), of the floor against the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)
@@ -58,30 +71,73 @@ def budget(
     if body != PLATFORM:
         raise refuse(at, f"it is a point of {body}", "Use a point of the platform")
     kinematics, model = ideal(mechanism), felt_links(mechanism)
+    forced = bool(kinematics.thrusts) and not kinematics.actuated
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))
     temperature = float(warmed is not None) if temperature is None else temperature
-    corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
-    lost, finite = lost_motion(kinematics, model), map_error_at(mechanism, kinematics, corners)
-    resolution, steps = pose_resolution(mechanism, kinematics), _steps(assembly, kinematics.actuators)
     half = np.abs(stack(list(command.values()))) if command else np.zeros(0)
     carry = transport(point - assembly.bodies[PLATFORM].reference)
-    errors = _command_errors(kinematics, lost, command_columns(kinematics, command))
-    loss, cross, left = (_times(np.abs(carry @ each), half) for each in errors)
-    seen = carry @ resolution.inverse.values
-    common = [
-        np.max(np.abs((carry @ finite.errors[..., None])[..., 0]), axis=0),
-        coverage * np.sqrt(_times(seen**2, resolution.gauge_noise**2)),
-        _times(np.abs(seen), 0.5 * resolution.gauge_steps),
-        np.full(6, np.nan) if warmed is None else np.abs(warmed.of(at).values[..., :, 0]) * np.abs(temperature),
-        *([] if steps is None else [_times(np.abs(carry @ lost.gain.values), 0.5 * steps)]),
-    ]
-    sources = (*SOURCES, STEPS)[: 2 + len(common)]
+    columns = command_columns(kinematics, command)
+    steps: dict[str, Array] = {}
+    if forced:
+        plain = corrected = {PARASITIC: _times(np.abs(carry @ _forced_errors(kinematics, model, columns)), half)}
+        provenance = model.provenance
+    else:
+        corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
+        lost, finite = lost_motion(kinematics, model), map_error_at(mechanism, kinematics, corners)
+        loss, cross, left = (_times(np.abs(carry @ each), half) for each in _command_errors(kinematics, lost, columns))
+        mapped = np.max(np.abs((carry @ finite.errors[..., None])[..., 0]), axis=0)
+        plain, corrected = (
+            {"lost motion": own, "crosstalk": rest, "linear map": mapped} for own, rest in ((loss, cross), (np.zeros(6), left))
+        )
+        least = _steps(assembly, kinematics.actuators)
+        steps = {} if least is None else {STEPS: _times(np.abs(carry @ lost.gain.values), 0.5 * least)}
+        provenance = f"{lost.provenance}; {finite.provenance}"
+    attempts = Attempts()
+    resolution = (
+        attempts.of("gauge noise", lambda: pose_resolution(mechanism, kinematics)) if forced else pose_resolution(mechanism, kinematics)
+    )
+    unknown = np.full(6, np.nan)
+    seen = unknown if resolution is None else carry @ resolution.inverse.values
+    common = {
+        "gauge noise": unknown if resolution is None else coverage * np.sqrt(_times(seen**2, resolution.gauge_noise**2)),
+        "quantisation": unknown if resolution is None else _times(np.abs(seen), 0.5 * resolution.gauge_steps),
+        "drift": unknown if warmed is None else np.abs(warmed.of(at).values[..., :, 0]) * np.abs(temperature),
+        **steps,
+        **({} if noise is None and not forced else _noises(model, at, noise or {}, band, coverage)),
+    }
+    if resolution is None:
+        attempts.missing["quantisation"] = attempts.missing["gauge noise"]
+    sources = (*plain, *common)
     units = tuple((unit,) * len(sources) for unit in TWIST_UNITS)
-    plain, corrected = (Matrix(stack([*own, *common]), COMPONENTS, sources, units) for own in ((loss, cross), (np.zeros(6), left)))
-    missing = tuple(name for index, name in enumerate(sources) if np.any(np.isnan(plain.values[..., index])))
+    both = [Matrix(stack([*own.values(), *common.values()]), COMPONENTS, sources, units) for own in (plain, corrected)]
+    missing = tuple(name for index, name in enumerate(sources) if np.any(np.isnan(both[0].values[..., index])))
     ground = None if warmed is None else warmed.ground
-    provenance = f"{lost.provenance}; {finite.provenance}"
-    return ErrorBudget(plain, corrected, dict(command), temperature, missing, provenance, ground, coverage, reasons)
+    reasons = {**attempts.missing, **reasons, **{name: _NO_DENSITY for name in NOISES if name in missing}}
+    return ErrorBudget(both[0], both[1], dict(command), temperature, missing, provenance, ground, coverage, reasons)
+
+
+def _forced_errors(kinematics: Kinematics, model: LinearModel, columns: list[int]) -> Array:
+    """Error (..., 6, c) per command of the forces that hold it at rest by the elastic model: C (V^+ C)^+ xi - V xi."""
+    gain = np.asarray(static_gain(model, tuple(f"{PLATFORM}.{name}" for name in COMPONENTS), kinematics.thrusts).values)
+    inputs = np.linalg.pinv(kinematics.projection @ gain)
+    return gain @ inputs[..., columns] - kinematics.motion[..., columns]
+
+
+def _noises(
+    model: LinearModel, at: str, noise: Mapping[str, Spectrum], band: tuple[float, float] | None, coverage: float
+) -> dict[str, Array]:
+    """`coverage` standard deviations (..., 6) of the motion against the ground by kind of source; NaN without densities."""
+    relative = replace(model, rigid_output=np.zeros_like(model.rigid_output))
+    outputs = tuple(f"{at}.{name}" for name in COMPONENTS)
+    floor = {name: each for name, each in noise.items() if name.startswith(f"{GROUND}.")}
+    found: dict[str, Array] = {}
+    for kind, own in zip(NOISES, ({name: each for name, each in noise.items() if name not in floor}, floor), strict=True):
+        if not own:
+            found[kind] = np.full(6, np.nan)
+            continue
+        ends = default_frequencies(model)[[0, -1]] if band is None else band
+        found[kind] = coverage * random_response(relative, outputs, own, (float(ends[0]), float(ends[1]))).rms
+    return found
 
 
 def _command_errors(kinematics: Kinematics, lost: LostMotion, columns: list[int]) -> tuple[Array, Array, Array]:

@@ -12,13 +12,16 @@ from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
 from flexstage.base.number import Array, Number, stack
-from flexstage.base.record import VIEW
+from flexstage.base.record import INNER, VIEW
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.mechanism.assembly.expansion import Ground
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 STEPS = "actuator steps"
+PARASITIC = "parasitic motion"
+"""Motion beyond the command, of forces that the elastic model gives for it: what a force-driven stage has for lost motion and crosstalk."""
+NOISES = ("actuator noise", "floor vibration")
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
 
 
@@ -26,7 +29,8 @@ class ErrorBudget(Result):
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
     `missing` names unknown sources (unspecified gauge noise): they are NaN and omitted from the sums. `ground` is the ground material
-    assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources.
+    assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. Of a force-driven
+    stage both commands are equal: the forces that the elastic model gives for the command.
     """
 
     ideal: Matrix
@@ -38,6 +42,11 @@ class ErrorBudget(Result):
     ground: Ground | None = None
     coverage: float = 3.0
     reasons: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    @property
+    def forced(self) -> Annotated[bool, INNER]:
+        """Whether forces drive the stage."""
+        return PARASITIC in self.ideal.columns
 
     @property
     def sums(self) -> Annotated[Matrix, VIEW]:

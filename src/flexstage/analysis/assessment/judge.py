@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from flexstage.analysis.assessment.measures import Measure, corner, stroke, value_or_bound
+from flexstage.analysis.assessment.measures import Measure, corner, safety_at_strokes, stroke, value_or_bound
 from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
 from flexstage.analysis.bench import Bench
 from flexstage.analysis.workspace.stops import single_strokes
@@ -96,7 +96,7 @@ def _large_doubt(bench: Bench, drawn: Verdict) -> str:
         return ""
     if line.kind is stroke and line.sense is Sense.AT_LEAST:
         asked: Mapping[str, float] = {line.name: line.limit}
-    elif line.kind is corner:
+    elif line.kind in (corner, safety_at_strokes):
         asked = bench.box()
     elif line.kind.over_strokes and bench.kinematics.actuated:
         single = single_strokes(bench.mechanism, bench.kinematics)

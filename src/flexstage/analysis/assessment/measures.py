@@ -18,6 +18,7 @@ from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.force_workspace import bounds_along
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
 from flexstage.analysis.workspace.stops import with_stops
+from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import utilisation
 from flexstage.base.finding import LowerBoundError, refuse, require
 from flexstage.base.lazy import Late
@@ -180,11 +181,21 @@ def _nth(frequencies: Array, asked: Measure) -> Array:
 
 @partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
 def safety(bench: Bench, _: Measure) -> Array:
-    """Yield over peak stress in the worst hinge at the worst corner of the strokes, from zero voltage."""
-    if bench.stress.unknown:
-        links = ", ".join(bench.stress.unknown[:3])
+    """Yield over peak stress in the worst hinge at the worst corner of the strokes, from zero voltage, or at peak current."""
+    return _known_safety(bench.stress)
+
+
+@partial(MeasureKind, "safety.at_strokes", RATIO, extreme=Extreme.LEAST)
+def safety_at_strokes(bench: Bench, _: Measure) -> Array:
+    """Yield over peak stress in the worst hinge at the worst corner of the required strokes."""
+    return _known_safety(bench.stress_at_strokes)
+
+
+def _known_safety(found: HingeStress) -> Array:
+    if found.unknown:
+        links = ", ".join(found.unknown[:3])
         raise refuse("safety", f"the material of {links} has no stress limit", 'Add e.g. yield_stress = "1360 MPa" to the material')
-    return bench.stress.safety
+    return found.safety
 
 
 @partial(MeasureKind, "buckling", RATIO, over_strokes=True)

@@ -21,6 +21,7 @@ from flexstage.analysis.assessment.measures import (
     over,
     path_buckling,
     safety,
+    safety_at_strokes,
 )
 from flexstage.analysis.loaded.course import drive_quantity
 from flexstage.base.finding import DesignError, Finding, refuse, suggest_nearest
@@ -88,7 +89,7 @@ def asked_factor(mechanism: Mechanism) -> float:
     """
     lines = [line for line in requirements(mechanism) if line.sense is Sense.AT_LEAST]
     own = [line.limit for line in lines if line.kind in (buckling_factor, buckling, path_buckling)]
-    return max(own or [line.limit for line in lines if line.kind is safety], default=1.0)
+    return max(own or [line.limit for line in lines if line.kind in (safety, safety_at_strokes)], default=1.0)
 
 
 def known_keys(mechanism: Mechanism) -> tuple[str, ...]:

@@ -177,9 +177,13 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
     bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
     platform_shapes = platform @ solved.shapes
-    parts = participation(compliance_root(model, platform), platform_shapes, solved.values)
-    flat = (solved.values.reshape(-1, solved.values.shape[-1]), parts.reshape(-1, *parts.shape[-2:]))
-    chosen = choose(*flat, Choice(cluster=cluster)).mask.reshape(frequencies.shape)
+    still = solved.values == 0.0
+    elastic = np.where(still, np.inf, solved.values)
+    parts = participation(compliance_root(model, platform), platform_shapes, elastic)
+    flat = (elastic.reshape(-1, solved.values.shape[-1]), parts.reshape(-1, *parts.shape[-2:]))
+    floating = still & np.any(np.abs(platform_shapes) > 0.0, axis=-2)
+    count = Choice().count - int(np.sum(floating))
+    chosen = floating | choose(*flat, Choice(count, cluster)).mask.reshape(frequencies.shape)
     own = first_design(chosen, 1)
     together = _together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True)), own)
     names, in_plane = _name_modes(bodies, *together, own)
@@ -188,7 +192,7 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
         shapes=solved.shapes,
         platform_shapes=platform_shapes,
         share=share,
-        compliance_share=np.sum(parts**2, axis=-2),
+        compliance_share=np.where(floating, 1.0, np.sum(parts**2, axis=-2)),
         chosen=chosen,
         bodies=bodies,
         energies=energies,
@@ -220,7 +224,8 @@ def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
     >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]
     """
-    return _split(values, (2.0 * gap + _ROUNDING * values / values[:1]) * values)
+    least = values[values > 0.0][:1] if np.any(values == 0.0) else values[:1]
+    return _split(values, (2.0 * gap + _ROUNDING * values / least) * values if len(least) else gap * values)
 
 
 def _split(values: Array, slack: Array) -> list[list[int]]:

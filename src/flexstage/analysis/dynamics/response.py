@@ -18,6 +18,8 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.port import ports
 
 _MODES_SHOWN = 12
+_WITHOUT_RESONANCES = (1.0, 1000.0)
+"""Band [Hz] of a rigid body that only forces drive."""
 _ANGLES = np.linspace(-1.45, 1.45, 25)
 
 
@@ -86,6 +88,9 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     ratios = modal_ratios(model, solved, damping_law(model, damping))
     groups = repeated_groups(first_design(solved.values, 1))
     natural, width = average(natural, groups), np.maximum(average(first_design(ratios, 1), groups), 1e-6)
+    natural, width = natural[natural > 0.0], width[natural > 0.0]
+    if band is None and not natural.size:
+        band = _WITHOUT_RESONANCES
     low, high = band if band is not None else (natural[0] / 50.0, 2.0 * natural[min(_MODES_SHOWN, len(natural)) - 1])
     around = (natural[:, None] * (1.0 + width[:, None] * np.tan(_ANGLES))).ravel()
     coarse = np.geomspace(low, high, 1 + max(2, round(40.0 * float(np.log10(high / low)))))

@@ -80,7 +80,12 @@ def _static_shapes(model: LinearModel, point: str) -> Array:
     found = statics(model, load_point=point, read_point=point)
     require(Finding(point, reason, "Use the lumped model") for name, reason in found.reasons.items() if name == "stiffness")
     rows = model.output[..., model.output_index(found.compliance.rows), :]
-    return displacement(model, np.swapaxes(rows, -1, -2)) @ found.stiffness.values
+    shapes = displacement(model, np.swapaxes(rows, -1, -2)) @ found.stiffness.values
+    if model.floating is None:
+        return shapes
+    axes = np.isinf(np.diag(found.compliance.values))  # without stiffness: the floating motions that make up the twist
+    missing = (np.eye(len(rows)) - rows @ shapes)[axes]
+    return shapes + model.floating @ np.linalg.solve(rows[axes] @ model.floating, missing)
 
 
 def _congruent(matrix: Array, motions: Array) -> Array:

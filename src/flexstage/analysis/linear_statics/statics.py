@@ -17,7 +17,7 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, S
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
-from flexstage.models.linear.undetermined import require_unmoved
+from flexstage.models.linear.undetermined import floats, require_unmoved
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _SINGULAR = 1e-11
@@ -56,6 +56,8 @@ class DirectionalStiffness:
     def along(self, angle: Number) -> Array:
         """Stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n)."""
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        if not self.tensor.values.any(axis=-1).all():  # an axis without stiffness
+            return np.zeros(direction.shape[:-1])
         compliance = np.linalg.inv(self.tensor.values)
         return 1.0 / np.einsum("...i,...ij,...j->...", direction, compliance, direction)
 
@@ -91,7 +93,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
 
     C = C_read K^-1 C_load^T, strokes fixed. Small displacements. If the model leaves the platform fewer than six degrees of freedom (the
     mapped model of a guide), the stiffness is infinite along the others. The stiffness and tensors derived from it are then NaN (by the
-    first design).
+    first design). Along an axis without stiffness the compliance is infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -101,9 +103,14 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     read = tuple(f"{read_point}.{name}" for name in COMPONENTS)
     load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
     wrench = tuple(f"{load_point}.{name}" for name in FORCES)
-    require_unmoved(model, wrench)
+    floating = floats(model, wrench)
+    if model.floating is None or sum(floating) != model.floating.shape[-1] or load_point != read_point:
+        require_unmoved(model, wrench)
     force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
     values = model.seen(model.output_index(read), displacement(model, force))
+    if any(floating):
+        values[floating, :], values[:, floating] = 0.0, 0.0
+        values[floating, floating] = np.inf
     inverse = _inverse(values)
     return Statics(
         load_point,
@@ -112,7 +119,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
         Matrix(inverse, wrench, read, ratio_units(WRENCH_UNITS, TWIST_UNITS)),
         held=directional(inverse[..., :2, :2]),
         free=directional(_inverse(values[..., :2, :2])),
-        centre=centre_of_stiffness(inverse),
+        centre=np.full(3, np.nan) if any(floating) else centre_of_stiffness(inverse),
         provenance=model.provenance,
     )
 
@@ -180,6 +187,10 @@ def _inverse(compliance: Array) -> Array:
     """Inverse of a compliance; NaN for a rank-deficient one."""
     first = np.real(first_design(compliance, 2))
     diagonal = np.diag(first)
+    if np.any(loose := np.isinf(diagonal)):
+        result = np.zeros(compliance.shape)
+        result[np.ix_(~loose, ~loose)] = _inverse(compliance[np.ix_(~loose, ~loose)])
+        return result
     scale = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     if np.linalg.matrix_rank(first / scale / scale[:, None], tol=_SINGULAR) < len(first):
         return np.full(compliance.shape, np.nan)

@@ -17,7 +17,7 @@ import scipy
 
 from flexstage.analysis.workspace.load import SAFETY, dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design, stack
 from flexstage.base.record import Heading, Layout
 from flexstage.base.session import SESSION
@@ -44,6 +44,8 @@ _Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
 """Relative softening below which the stage counts as not softened: rounding."""
+_NEUTRAL = 1e-6
+"""Stiffness over mass [1/s^2] of a motion without stiffness that is rounding."""
 LARGE = 900
 """Degrees of freedom above which matrices are sparse."""
 _DENSE = 6000
@@ -141,6 +143,8 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     unit = [pieces.matrix(pieces.geometric(*_stroke(mechanism, pieces, name))) for name in (() if limits is None else limits.actuators)]
     matrices = (pieces.matrix(pieces.stiffness), pieces.dead, *unit)
     corners = np.zeros((1, 0)) if limits is None else np.real(limits.corners)
+    if model.floating is not None:
+        _require_neutral(model.floating.T @ matrices[1][: len(model.floating), : len(model.floating)] @ model.floating)
     batch = np.broadcast_shapes(corners.shape[:-2], *(each.shape[:-2] for each in matrices))
     corners = np.broadcast_to(corners, (*batch, *corners.shape[-2:]))
     if pieces.is_large:
@@ -159,6 +163,14 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
         moving=pieces.moving(rows[0].shapes),
         provenance=f"linearised buckling of the {model.provenance}",
     )
+
+
+def _require_neutral(square: Array) -> None:
+    """Refuse a dead load that gives motions without stiffness a stiffness of its own, here over mass (k, k) [1/s^2]."""
+    if np.max(np.abs(square)) > _NEUTRAL:
+        frequency = float(np.sqrt(np.max(np.abs(square)))) / (2.0 * np.pi)
+        what = f"weight acts as a spring on a motion without stiffness (frequency {frequency:.3g} Hz), which this model neglects"
+        raise refuse("stage", what, "Place the centre of mass on the axis of the bearing, or set gravity along it")
 
 
 @SESSION.keep(2)
@@ -254,6 +266,9 @@ class _Pieces:
     def stiffness(self) -> _Terms:
         """K: stiffness of the model and of the internal bending of every part."""
         own = [(few(item.operator), item.law) for item in self.model.stiffness.values()]
+        if self.model.floating is not None:
+            momentum = self.model.inertia_matrix @ self.model.floating
+            own.append((few(momentum.T), self.model.scale * np.eye(momentum.shape[-1])))
         return own + [(self.inner[name], part.inner[..., None] * np.eye(part.inner.shape[-1])) for name, part in self.parts.items()]
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Annotated, Any, ClassVar, TypeAlias
 
@@ -10,20 +10,23 @@ import numpy as np
 
 from flexstage.analysis.workspace.load import SAFETY
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.analysis.workspace.wrench import corner_wrenches
+from flexstage.analysis.workspace.wrench import Command, corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
 from flexstage.base.number import Array, index_of_largest, stack
-from flexstage.base.record import INNER, VIEW, Heading, Layout
+from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import RATIO
-from flexstage.beams.stress import has_section, stress
+from flexstage.beams.stress import FACES, has_section, stress, stressed_place
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.profile import single
+from flexstage.spatial.frame import COMPONENTS, MOTION
+
+FROM_ZERO = "of all strokes from no voltage"
 
 
 class HingeStress(Result):
@@ -33,13 +36,16 @@ class HingeStress(Result):
     at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit` [Pa] is
     the least of yield stress, fatigue limit and allowable stress (NaN: none; absent: yield stress). `governing` names it, on the first
     design.
+
+    `places` are end and faces with the largest stress (a batch has none), `condition` is the range of strokes. `actuators` with their
+    `units` may be force actuators, or coordinates of the platform.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Stress in the hinges",
-        "table",
+        "table places",
         head="hinge",
-        notes=("Von Mises stress at the worst corner of all strokes from zero voltage, with permanent load; peak: with the notch factor.",),
+        notes=("Von Mises stress at the worst corner {self.condition}, with permanent load; peak: with the notch factor.",),
     )
 
     links: tuple[str, ...]
@@ -52,6 +58,9 @@ class HingeStress(Result):
     provenance: str
     limit: Array | None = None
     governing: tuple[str, ...] = ()
+    places: Annotated[tuple[str, ...], Along("links"), Heading("largest at")] = ()
+    condition: str = FROM_ZERO
+    units: Annotated[tuple[str, ...], INNER] = ()
 
     @property
     def allowed(self) -> Annotated[Array, VIEW]:
@@ -91,7 +100,7 @@ class HingeStress(Result):
     @property
     def worst_strokes(self) -> Annotated[Matrix, VIEW]:
         """Strokes at the largest stress of each link."""
-        return Matrix(self.strokes, self.links, self.actuators, "m")
+        return Matrix(self.strokes, self.links, self.actuators, (self.units,) * len(self.links) if self.units else "m")
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
@@ -100,11 +109,14 @@ class HingeStress(Result):
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))
 
 
-def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> HingeStress:
+def hinge_stress(
+    mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, *, command: Command | None = None, condition: str = FROM_ZERO
+) -> HingeStress:
     """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
     `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (the bias also bends its hinges), or
-    `stroke_limits(mechanism)` for a stage that is stress-free at its bias. Linear beam theory, section maxima added (see `beams.stress`).
+    `stroke_limits(mechanism)` for a stage that is stress-free at its bias; those of coordinates with a `command`, whose inputs reach them.
+    `condition` states these limits. Linear beam theory, section maxima added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -117,7 +129,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     sized = sized_links(assembly)
     if not sized:
         raise refuse("stress", "no link has a section to check", "Stress is that of notches, necks, leaves and rods")
-    wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
+    wrenches = corner_wrenches(mechanism, model, limits, tuple(sized), command)
     points = limits.points(wrenches.ndim - 3)
     rows = _rows(list(sized.values()), wrenches, points)
     nominal, peak, known, limit = (stack([row[item] for row in rows]) for item in (0, 1, 2, 4))
@@ -132,7 +144,30 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
         provenance=model.provenance,
         limit=limit,
         governing=tuple(_governing(link.material) for link in sized.values()),
+        places=() if any(row[5].ndim > 1 for row in rows) else tuple(_places(sized, np.stack([np.real(row[5]) for row in rows]))),
+        condition=condition,
+        units=tuple(_input_unit(model, name) for name in limits.actuators),
     )
+
+
+def _input_unit(model: LinearModel, name: str) -> str:
+    return MOTION.unit(name) if name in COMPONENTS else model.inputs[model.input_index((name,))[0]].unit
+
+
+def _places(links: Mapping[str, PlacedLink], wrenches: Array) -> Iterator[str]:
+    """End and faces of the largest stress of links under their wrenches (L, 6); the body of an end without the name of its instance."""
+    groups: dict[int, list[int]] = {}
+    found: dict[int, tuple[int, int]] = {}
+    for index, link in enumerate(links.values()):
+        groups.setdefault(id(link.part), []).append(index)
+    for members in groups.values():
+        first = list(links.values())[members[0]]
+        found |= dict(zip(members, zip(*stressed_place(_real(first.part), first.material, wrenches[members]), strict=True), strict=True))
+    for index, (name, link) in enumerate(links.items()):
+        end, face = found[index]
+        instance = f"{name.rpartition('/')[0]}/"
+        side = "middle" if end == 0 else f"{link.joins[int(end > 0)].removeprefix(instance)} end"
+        yield f"{side}, {FACES[face]}"
 
 
 def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
@@ -162,11 +197,11 @@ def _has_section(link: PlacedLink) -> bool:
     return not isinstance(link.part, Restricted) and has_section(link.part)
 
 
-_Row: TypeAlias = tuple[Array, Array, Array, Array, Array]
+_Row: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 
 
 def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]:
-    """Nominal and peak stress, yield stress, strokes and least limit of links at their worst corners, grouped by part."""
+    """Nominal and peak stress, yield stress, strokes, least limit and wrench of links at their worst corners, grouped by part."""
     groups: dict[tuple[int, int], list[int]] = {}
     for index, link in enumerate(links):
         groups.setdefault((id(link.part), id(link.material)), []).append(index)
@@ -181,7 +216,7 @@ def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]
         for place, index in enumerate(members):
             strokes = np.take_along_axis(np.broadcast_to(points, (*peaks.shape[1:], points.shape[-1])), where[place][..., None], axis=0)[0]
             limits = (_limit(links[index], name, peak[place, 0]) for name in ("yield_stress", "limit"))
-            rows[index] = nominal[place, 0], peak[place, 0], next(limits), strokes, next(limits)
+            rows[index] = nominal[place, 0], peak[place, 0], next(limits), strokes, next(limits), worst[place, 0]
     return [rows[index] for index in range(len(links))]
 
 

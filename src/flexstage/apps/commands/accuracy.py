@@ -1,9 +1,11 @@
-"""Commands about what a stage reaches and how exactly: `workspace`, `drift`, `sensitivities`, `budget`."""
+"""Commands about workspace and accuracy of a stage: `workspace`, `drift`, `sensitivities`, `budget`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Annotated, Any, TypeAlias
+
+import numpy as np
 
 from flexstage.analysis.assessment import budget as budgeting
 from flexstage.analysis.assessment import sensitivities as derivatives
@@ -22,8 +24,17 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command, print_missing
 from flexstage.show.command.design import elastic_model
 from flexstage.show.command.displaced import Place, footing
-from flexstage.show.command.options import ModelName, Point, modes_option, parameters_option, temperature_option, text_option
-from flexstage.show.command.values import motions, names
+from flexstage.show.command.options import (
+    InputDensities,
+    ModelName,
+    Point,
+    band_option,
+    modes_option,
+    parameters_option,
+    temperature_option,
+    text_option,
+)
+from flexstage.show.command.values import band_limits, motions, names, spectra
 from flexstage.show.table import Table, result_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
@@ -76,7 +87,7 @@ def workspace(
 
 
 def _with_error(body: Any, small: SecondOrder | None) -> Any:
-    """A result, and beside it by how much linear kinematics is off over the motions that it is about."""
+    """A result with the error of linear kinematics over its motions."""
     return body if small is None else SideBySide((body, {"second_order": small}))
 
 
@@ -146,15 +157,22 @@ def budget(
     command: Commands = None,
     temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,
     point: Point = PLATFORM,
+    input_asd: InputDensities = None,
+    band: Annotated[tuple[str, str] | None, band_option("that of response")] = None,
 ) -> CommandResult:
     """Error budget in nm and nrad, one line an axis.
 
     Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped model.
+
+    Of a stage that forces move, in open loop: parasitic motion, gauge noise, quantisation and drift.
+
+    With --input-asd: noise of the actuators and floor vibration.
     """
-    asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
+    asked = motions(command or ()) or required_command(mechanism) or _reached(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     stands = footing(mechanism, Place())
-    found = budgeting.budget(mechanism, asked, at=point, temperature=warmth)
+    noise = spectra(stands.links, input_asd) if input_asd else None
+    found = budgeting.budget(mechanism, asked, at=point, temperature=warmth, noise=noise, band=band_limits(band))
     small = second_order(mechanism, ideal(mechanism), asked)
     return CommandResult(
         mechanism,
@@ -162,3 +180,12 @@ def budget(
         lambda: [*stands.tables(), _small_text(small), *error_budget_tables(found)],
         model=Model.LUMPED,
     )
+
+
+def _reached(mechanism: Mechanism) -> dict[str, float]:
+    """Half of the single-axis strokes; of a stage that forces move the motions that they hold."""
+    kinematics = ideal(mechanism)
+    if kinematics.actuated or not kinematics.thrusts:
+        return dict(study.all_strokes(mechanism))
+    reach = force_workspace(mechanism, kinematics, elastic_model(mechanism, Model.LUMPED))
+    return {name: float(held) for name, held in zip(reach.coordinates, reach.held, strict=True) if np.isfinite(held)}

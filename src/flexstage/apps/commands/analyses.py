@@ -20,8 +20,6 @@ from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.loaded.standing import standing
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.record import SideBySide, walk
-from flexstage.base.units.quantity import FREQUENCY
-from flexstage.base.units.unit import parse
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
@@ -32,9 +30,9 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import known_point
 from flexstage.show.command.displaced import Place, footing
-from flexstage.show.command.options import ModelName, Point, band_option, text_option
+from flexstage.show.command.options import InputDensities, ModelName, Point, band_option, text_option
 from flexstage.show.command.output import save
-from flexstage.show.command.values import spectra
+from flexstage.show.command.values import band_limits, spectra
 from flexstage.show.document import response_body, stiffness_body
 from flexstage.show.table import Table, result_table
 from flexstage.show.tables import kinematics as motion_tables
@@ -104,7 +102,7 @@ def stiffness(
     found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
     sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there.operating_point is None else None
     mass = mass_matrix(mechanism, linear, point=point)
-    attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
+    attempt = Attempts()  # a stage without ideal kinematics may have a stiffness
     freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
     return CommandResult(
         mechanism,
@@ -204,7 +202,7 @@ def modes(
 
 
 def _view_ending(path: Path) -> str:
-    """The kind of file that is wanted, by its ending; refused where it is none of the two."""
+    """The kind of the output file, by its ending; refuses other endings."""
     ending = path.suffix.lower()
     if ending not in {".html", ".glb"}:
         raise refuse("--view", f'"{path}" ends neither in .html nor in .glb', "Name a page, stage.html, or a GLB file, stage.glb")
@@ -212,15 +210,15 @@ def _view_ending(path: Path) -> str:
 
 
 def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str | None, model: Model) -> str | bytes:
-    """The stage with its modes, as a page or as a GLB file; strokes and deflections are those of the drawn stage."""
+    """The stage with its modes, as a page or as a GLB file; strokes and deflections are those of the undeformed stage."""
     drawn = standing(mechanism) if model is Model.LUMPED else linear
     shown = stage_data(mechanism, model=drawn, weighed=linear, found=found)
     return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html
 
 
 def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> str:
-    """The stage with its modes about where it stands, as a page."""
-    return view_of(mechanism, modes_at_data(mechanism, there, found, "about where it stands"), "state 1").html
+    """The stage with its modes about an operating point, as a page."""
+    return view_of(mechanism, modes_at_data(mechanism, there, found, "about the operating point"), "state 1").html
 
 
 @command()
@@ -241,15 +239,7 @@ def response(
         ),
     ] = None,
     band: Annotated[tuple[str, str] | None, band_option("1/50 of the first to twice the twelfth natural frequency")] = None,
-    input_asd: Annotated[
-        list[str] | None,
-        text_option(
-            "--input-asd",
-            "INPUT=DENSITY",
-            'Amplitude spectral density of a white input or its rate, e.g. "ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". '
-            "Repeatable.",
-        ),
-    ] = None,
+    input_asd: InputDensities = None,
     place: Place,
 ) -> CommandResult:
     """Frequency response of outputs to inputs.
@@ -262,7 +252,7 @@ def response(
     there = footing(mechanism, place, model)
     linear = there.linear
     law = damping_law(linear)
-    grid = responses.default_frequencies(linear, _hertz(band), damping=law)
+    grid = responses.default_frequencies(linear, band_limits(band), damping=law)
     chosen = outputs or ["platform", *(channel.name for channel in linear.outputs if "." not in channel.name)]
     found = responses.response(linear, chosen, inputs or linear.actuators, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
@@ -278,13 +268,3 @@ def response(
         model=model,
         warnings=there.warnings,
     )
-
-
-def _hertz(band: tuple[str, str] | None) -> tuple[float, float] | None:
-
-    if band is None:
-        return None
-    low, high = (parse(text, FREQUENCY, where="--band") for text in band)
-    if not 0.0 < low < high:
-        raise refuse("--band", f"{band[0]} to {band[1]} is no band", "Give a low frequency above zero and a higher one")
-    return low, high

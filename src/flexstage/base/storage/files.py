@@ -50,7 +50,7 @@ def require_regular(path: Path) -> None:
     try:
         mode = path.stat().st_mode
     except FileNotFoundError:
-        raise refuse(str(path), "there is no such file", "Check the path") from None
+        raise refuse(str(path), "file not found", "Check the path") from None
     except (OSError, ValueError) as error:
         raise refuse(str(path), f"it cannot be read ({_error_text(error)})", "Name a file that can be read") from None
     if stat.S_ISREG(mode):

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.finding import suggest_nearest
+from flexstage.base.finding import list_choices, suggest_nearest
 from flexstage.base.number import freeze
 from flexstage.base.units.dimension import Dimension, common_spelling, dimension_of
 from flexstage.base.units.unit import ANGLE_POWERS, number_with_unit, quantity_of_dimension
@@ -79,7 +79,7 @@ class Expression:
 
 def _named(name: str, scope: Scope) -> Amount:
     if name not in scope:
-        raise ExpressionError(f'there is no number "{name}"', _name_advice(name, scope))
+        raise ExpressionError(f'unknown number "{name}"', _name_advice(name, scope))
     found = scope[name]
     if found is None:
         raise UnknownAmountError(name)
@@ -212,7 +212,7 @@ class _Parser:
             raise self.unexpected()
         if self.sign("("):
             if name not in FUNCTIONS:
-                raise ExpressionError(f'there is no function "{name}"', f"There are {', '.join(FUNCTIONS)}")
+                raise ExpressionError(f'unknown function "{name}"', f"Use {list_choices([*FUNCTIONS])}")
             inner = self.inside()
             return Expression(inner.names, partial(_call, name, inner, self.text[start : self.at].strip()))
         return Expression(frozenset([name]), partial(_named, name))
@@ -258,7 +258,7 @@ class _Parser:
             return ExpressionError(f'found "^" {after}', "Powers are written as products, arm*arm, and roots as sqrt(arm)")
         if rest[0] == ",":
             return ExpressionError(f'found "," {after}', "The decimal sign is a point")
-        return ExpressionError(f'found "{rest[0]}" {after}', "There are + - * / ( ), sqrt, sin, cos, tan, numbers with units, and names")
+        return ExpressionError(f'found "{rest[0]}" {after}', "Use + - * / ( ), sqrt, sin, cos, tan, numbers with units, and names")
 
 
 def unit_end(text: str, at: int) -> int:

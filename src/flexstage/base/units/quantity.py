@@ -70,7 +70,7 @@ POISSON_RANGE = Bound(low=-1.0, high=0.5, open_low=True, open_high=True)
 
 RATIO = Quantity("ratio", "1", "1", "0.3")
 SHARE = Quantity("share", "1", "%", "30 %")
-LENGTH = Quantity("length", "m", "mm", "1.54 mm")
+LENGTH = Quantity("length", "m", "mm", "2 mm")
 DISPLACEMENT = Quantity("displacement", "m", "um", "150 um")
 ANGLE = Quantity("angle", "rad", "deg", "30 deg")
 ROTATION = Quantity("rotation", "rad", "urad", "100 urad")

@@ -82,10 +82,10 @@ def missing_unit(found: Any, quantity: Quantity, *, where: str) -> DesignError:
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> str(missing_unit(1.54, LENGTH, where="parts.neck.thickness"))
-    'parts.neck.thickness: found 1.54 without a unit. Write for example "1.54 mm".'
+    'parts.neck.thickness: unit missing (got 1.54). Use a length, e.g. "2 mm".'
     """
     shown = f'"{found}"' if isinstance(found, str) else f"{found}"
-    return refuse(where, f"found {shown} without a unit", f'Write for example "{quantity.example}"')
+    return refuse(where, f"unit missing (got {shown})", f"Use {quantity.noun}, e.g. {example(quantity)}")
 
 
 def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
@@ -171,18 +171,26 @@ def _split(text: str, quantity: Quantity, where: str) -> tuple[str, str]:
 
 def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
     shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
-    example = f'Write for example "{quantity.example}"'
     if re.match(r"[+-]?(nan|inf)", text, re.IGNORECASE):
-        return refuse(where, f'found "{shown}", which is not finite', example)
-    if re.match(r"[+-]?\d+,\d", text):
-        return refuse(where, f'found "{shown}" with a comma', f"The decimal sign is a point. {example}")
-    return refuse(where, f'found "{shown}" where {quantity.noun} is expected', example)
+        return refuse(where, f'must be finite (got "{shown}")', f"Use e.g. {example(quantity)}")
+    if re.match(r"[+-]?\d+,\d+(?![\d.,])", text):
+        return refuse(where, f'decimal comma (got "{shown}")', f'Use a decimal point: "{shown.replace(",", ".")}"')
+    return refuse(where, f'must be {quantity.noun} (got "{shown}")', f"Use e.g. {example(quantity)}")
+
+
+def example(quantity: Quantity) -> str:
+    """An example of a quantity as it is typed: a ratio without quotes.
+
+    >>> example(RATIO)
+    '0.3'
+    """
+    return quantity.example if quantity is RATIO else f'"{quantity.example}"'
 
 
 def _round(exact: Fraction, text: str, where: str) -> float:
     value = _to_float(exact)
     if not np.isfinite(value) or (value == 0.0 and exact != 0):
-        raise refuse(where, f'found "{text}", which no double-precision number can hold', "Check the exponent and the unit")
+        raise refuse(where, f'outside the range of double precision (got "{text}")', "Check the exponent and the unit")
     return value
 
 
@@ -194,19 +202,19 @@ def _to_float(exact: Fraction) -> float:
 
 
 def _unit_scale(unit: str, quantity: Quantity, where: str, text: str) -> Fraction:
-    """Size of the unit in the quantity's SI unit, after a check of its dimension."""
-    example = f'Write for example "{quantity.example}"'
+    """The unit's size in the quantity's SI unit, after checking its dimension."""
+    hint = f"Use e.g. {example(quantity)}"
     if unit == quantity.si:
         return Fraction(1)
     try:
         dimension = dimension_of(unit)
     except ValueError as error:
-        raise refuse(where, f'found "{text}": {error}', example) from None
+        raise refuse(where, f'{error} (got "{text}", expected {quantity.noun})', hint) from None
     for form in (quantity.si, *quantity.also):
         expected = dimension_of(form)
         if dimension.powers == expected.powers:
             return dimension.size / expected.size
-    raise refuse(where, f'found "{text}", {_dimension_name(unit, dimension)}, where {quantity.noun} is expected', example)
+    raise refuse(where, f'must be {quantity.noun} (got "{text}", {_dimension_name(unit, dimension)})', hint)
 
 
 def _dimension_name(unit: str, dimension: Dimension) -> str:

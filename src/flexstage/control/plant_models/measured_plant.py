@@ -1,4 +1,4 @@
-"""The plant of a loop as a test found it: strokes to gauges by the modes and delay found, the rest by the model."""
+"""Plant identified in a test: strokes to gauges by the identified modes and delay, all else by the model."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from flexstage.experiment.records.record import Channel as Recorded
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.eigen import eigen
-from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.model import Channel, LinearModel
 
 _ALIKE, _APART = 0.7, 0.5
 _BESIDE = 0.05
@@ -33,23 +33,21 @@ _BELOW = 1.2
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Which of the model's modes (numbers `model`, of those that the plant has kept) are which of those found (numbers `found`)."""
+    """Pairs of model modes (indices `model`, among the plant's retained modes) and identified modes (indices `found`)."""
 
     model: Array
     found: Array
 
 
 def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
-    """The plant with what a test found in the place of the model's strokes-to-gauges: modes, static term, delay.
+    """Replace the model's response from strokes to gauges by the identified modes, static term and delay.
 
-    From strokes to gauges it is H = (sum of the modes + D) times the gauges' lags as the design states them, `delay` late; D is the real
-    constant that is left up to the highest mode. Amplifiers and filters are part of what is seen, and the hardware has none of its own;
-    the delay comes on top of the loop's. A platform's
-    motion in a loop's coordinate is what the gauges tell of it. Ground and wrenches act as in the model, whose modes take frequency and
-    damping of those found that they resemble. Modes above the band of the test are its D.
+    From strokes to gauges H = (sum of the modes + D) times the gauges' specified lags, with the `delay`; D is the real residual constant up
+    to the highest mode. The identified response includes amplifiers and filters, and the hardware has none of its own; the delay adds to
+    the loop's. Platform motion in a loop coordinate follows from the gauges. Ground and wrenches act as in the model, whose modes get
+    frequency and damping of the similar identified modes. Modes above the test's band are part of its D.
 
-    Raises `DesignError` where inputs and outputs are not the stage's actuators and gauges, and where the modes are not those of such a
-    stage.
+    Raises `DesignError` if inputs and outputs are not the stage's actuators and gauges, and if the modes do not match such a stage.
     """
     require(_channel_findings(given.coordinates, found))
     pairs = pair_modes(given, model, found)
@@ -60,7 +58,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
     late = common_delay(ahead)
     delay = 0.0 if late is None else late.value
     participation = ahead.participation * np.exp(ahead.poles * delay)[:, None]
-    direct = _static_term(ahead, participation, delay)[np.ix_(rows, columns)]
+    direct = _static_term(ahead, participation, delay, mass_line=given.coordinates.forced)[np.ix_(rows, columns)]
     sizes = outer[:, None], 1.0 / inner
     moved = _modal_system(
         found.poles, ahead.shapes[rows] * sizes[0], participation[:, columns] * sizes[1], direct * sizes[0] * sizes[1], given
@@ -73,6 +71,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
         sensors={name: replace(each, filter_order=0) for name, each in given.hardware.sensors.items()},
     )
     system = _together(given, driven, _retuned(given, pairs, found))
+    driven_by = "inputs" if given.coordinates.forced else "strokes"
     copies = (len(system.A) - len(driven.A)) // max(1, len(given.states))
     return Plant(
         system=system,
@@ -86,15 +85,15 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
         frequencies=found.frequencies,
         ratios=found.damping,
         left_out=0,
-        note=f"strokes to gauges as measured: {len(found.poles)} modes, {1e6 * delay:.4g} us late; ground by the model",
+        note=f"{driven_by} to gauges as measured: {len(found.poles)} modes, {1e6 * delay:.4g} us late; ground by the model",
         provenance=found.provenance,
     )
 
 
 def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
-    """The model's modes that resemble those found: alike at the gauges (assurance 0.7 or more) and within half of the frequency.
+    """Pair the model's modes with similar identified modes: gauge-based assurance 0.7 or more, within half of the frequency.
 
-    A mode found is compared with what the model's modes within 5 % of its partner span, as pairs turn into one another.
+    An identified mode is compared with the span of the model's modes within 5 % of its partner, because close pairs mix.
     """
     kept = _kept(given)
     rows = [channel.name for channel in model.outputs]
@@ -111,7 +110,7 @@ def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
 
 
 def _kept(given: Plant) -> list[int]:
-    """Numbers of the model's modes that the plant has kept."""
+    """Indices of the model modes retained in the plant."""
     return [int(name.removeprefix("mode")) - 1 for name in mode_names(given)]
 
 
@@ -123,51 +122,55 @@ def _assurance(seen: Array, shapes: Array, frequencies: Array, column: int) -> f
 
 def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[Finding]:
     if not len(found.frequencies):
-        yield Finding("--record", "no mode is found in it", "Record longer, or drive more: see flexstage identify")
+        yield Finding("--record", "no identified mode", "Record longer, or drive more: see flexstage identify")
         return
     below = found.frequencies <= _BELOW * given.frequencies[min(len(given.coordinates.names), len(given.frequencies)) - 1]
     count, alike = int(np.sum(below)), int(np.sum(below[pairs.found]))
-    if alike < _LEAST * max(count, 1) or not len(pairs.found):
-        ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
-        theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
-        what = f"{alike} of its {count} lowest modes ({theirs} Hz) are like the stage's ({ours} Hz): it seems to be of another stage"
-        yield Finding(
-            "--record", what, "Take the design of the stage that was tested; look for exchanged channels by flexstage identify --stage"
-        )
+    ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
+    theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
+    if not count:
+        what = f"its modes ({theirs} Hz) are above the lowest of the stage ({ours} Hz): it is probably of another stage, or too short"
+        yield Finding("--record", what, "Record longer or in a lower band, or use the design of the tested stage")
+    elif alike < _LEAST * count or not len(pairs.found):
+        what = f"{alike} of its {count} lowest modes ({theirs} Hz) match the stage's ({ours} Hz): it is probably of another stage"
+        yield Finding("--record", what, "Use the design of the tested stage; check for exchanged channels with flexstage identify --stage")
 
 
 def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]:
-    """Channels that are missing, and units that cannot be those of the stage's."""
+    """Findings for missing channels, and units that contradict the stage's."""
     units = {each.name: each.unit for each in (*loop.commands(), *loop.readings())}
     for kind, wanted, there in (("input", loop.actuators, found.inputs), ("output", loop.gauges, found.outputs)):
         names = [channel.name for channel in there]
         for name in wanted:
             if name not in names:
                 yield Finding(
-                    f"--record: {name}", f"no {kind} of the record is called so", f"{suggest_nearest(name, names)}; a loop needs all"
+                    f"--record: {name}",
+                    f"no {kind} channel of this name in the record",
+                    f"{suggest_nearest(name, names)}; a loop needs all",
                 )
                 continue
             unit = there[names.index(name)].unit
             if unit_problem(unit) is not None or not same_dimension(unit, units[name]):
-                what = f'its unit is "{unit}", where the loop has {units[name]}'
+                what = f'wrong unit (got "{unit}", expected {units[name]})'
                 yield Finding(
                     f"--record: {name}", what, "Record free strokes (or the inputs of forces) and gauge readings, with their units"
                 )
 
 
 def channel_places(loop: Coordinates, found: Identified) -> tuple[list[int], list[int], Array, Array]:
-    """Rows and columns of a loop's gauges and actuators in a test, and the size of the units of both."""
+    """Find rows and columns of a loop's gauges and actuators in a test, and the size of the units of both."""
     rows = [[channel.name for channel in found.outputs].index(name) for name in loop.gauges]
     columns = [[channel.name for channel in found.inputs].index(name) for name in loop.actuators]
-    return rows, columns, _sizes(found.outputs, rows), _sizes(found.inputs, columns)
+    return rows, columns, _sizes(found.outputs, rows, loop.readings()), _sizes(found.inputs, columns, loop.commands())
 
 
-def _sizes(channels: tuple[Recorded, ...], chosen: list[int]) -> Array:
-    return np.array([float(dimension_of(channels[number].unit).size) for number in chosen])
+def _sizes(channels: tuple[Recorded, ...], chosen: list[int], own: tuple[Channel, ...]) -> Array:
+    pairs = zip(chosen, own, strict=True)
+    return np.array([float(dimension_of(channels[number].unit).size / dimension_of(each.unit).size) for number, each in pairs])
 
 
 def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
-    """What was found with the gauges' lags undone, 1 + s/omega_g, and its delay put back: residues and responses."""
+    """Identified residues and responses with the gauges' lags removed, 1 + s/omega_g, and the delay restored."""
     every = np.full(len(found.outputs), np.inf)
     every[rows] = lags
     back = found.participation * np.exp(-found.poles * found.delay)[:, None]
@@ -178,26 +181,32 @@ def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
 
 
 def _lagged(moved: System, given: Plant, lags: Array) -> System:
-    """The motion as the gauges read it, late by their lags."""
+    """Motion as read by the gauges, with their lags."""
     ahead = rename(moved, {name: f"ahead.{name}" for name in moved.output_names})
     seen = lag(ahead.outputs, lags / (2.0 * np.pi), moved.outputs)
     return connect([ahead, seen], {}, given.coordinates.commands(), moved.output_names)
 
 
-def _static_term(found: Identified, participation: Array, delay: float) -> Array:
-    """The real constant (p, m) that the modes leave of the responses, by least squares up to the highest of them."""
+def _static_term(found: Identified, participation: Array, delay: float, *, mass_line: bool) -> Array:
+    """Residual real constant (p, m) of the responses after the modes, by least squares up to the highest mode.
+
+    With the `mass_line`, all lines count, by relative errors: loops on forces cross over above the modes, where the motion is small.
+    """
     lines = found.responses.frequencies
-    chosen = (lines >= found.band[0]) & (lines <= min(found.band[1], float(np.max(found.frequencies))))
+    highest = np.inf if mass_line else float(np.max(found.frequencies))
+    chosen = (lines >= found.band[0]) & (lines <= min(found.band[1], highest))
     lines = lines[chosen]
     earlier = np.exp(2j * np.pi * lines * delay)[:, None, None]
-    left = found.responses.values[chosen] * earlier - modal_sum(lines, found.poles, found.shapes, participation)
+    modal = modal_sum(lines, found.poles, found.shapes, participation)
+    left = found.responses.values[chosen] * earlier - modal
     away = np.min(np.abs(lines[:, None] / found.frequencies - 1.0) / found.damping, axis=1)
-    weights = np.minimum(away / 5.0, 1.0) ** 2
-    return np.real(np.tensordot(weights, left, axes=1)) / np.sum(weights)
+    weights = np.broadcast_to(np.minimum(away / 5.0, 1.0)[:, None, None] ** 2, left.shape)
+    weights = weights / np.abs(modal) ** 2 if mass_line else weights
+    return np.real(np.sum(weights * left, axis=0)) / np.sum(weights, axis=0)
 
 
 def _modal_system(poles: Array, shapes: Array, drives: Array, direct: Array, given: Plant) -> System:
-    """sum phi l/(s - p) + conjugate + D as a real system, two states a mode: z' = p z + l u, y = 2 Re(phi z)."""
+    """Real system of sum phi l/(s - p) + conjugate + D, two states per mode: z' = p z + l u, y = 2 Re(phi z)."""
     count = len(poles)
     A = np.zeros((2 * count, 2 * count))
     B, C = np.zeros((2 * count, drives.shape[1])), np.zeros((len(shapes), 2 * count))
@@ -211,9 +220,9 @@ def _modal_system(poles: Array, shapes: Array, drives: Array, direct: Array, giv
 
 
 def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
-    """The model's system with frequency and damping of its modes as found.
+    """Model system with frequency and damping of its modes replaced by the identified ones.
 
-    Stiffness to the ground goes with the squared frequency, what dampers carry with the rate: the stage still follows a slow ground.
+    Ground stiffness scales with the squared frequency, ground damping with the rate: the stage still follows slow ground motion.
     """
     A, B = given.system.A.copy(), given.system.B.copy()
     ground = [column for column, name in enumerate(given.system.input_names) if name.startswith(f"{GROUND}.")]
@@ -230,7 +239,7 @@ def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
 
 
 def _together(given: Plant, driven: System, rest: System) -> System:
-    """Gaps by both; the loop's coordinates by what the gauges tell of the strokes; all other motions by the model."""
+    """Combined outputs: gaps by both; loop coordinates from the gauges for strokes; all other motions by the model."""
     loop, names, gaps = given.coordinates, rest.output_names, [f"gap.{name}" for name in given.gauges]
     measured = dict(zip(gaps, np.eye(len(gaps)), strict=True))
     measured |= {f"{kind}.{name}": row for kind in ("platform", "relative") for name, row in zip(loop.names, loop.pose, strict=True)}
@@ -245,5 +254,5 @@ def _together(given: Plant, driven: System, rest: System) -> System:
 
 
 def _same(rows: Sequence[str], columns: Sequence[str]) -> Array:
-    """1 where names are equal."""
+    """Matrix with 1 at equal names."""
     return np.array([[float(row == column) for column in columns] for row in rows])

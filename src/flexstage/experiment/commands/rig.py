@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, TIME, VOLTAGE
+from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FORCE, FREQUENCY, NOISE_DENSITY, TIME, VOLTAGE
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.record import report_reading
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
@@ -47,7 +47,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     rate: Annotated[str | None, rate_option("a power of two, at least ten times the highest platform mode")] = None,
     drive_rms: Annotated[
         str | None,
-        text_option("--drive-rms", "VALUE", "Rms of the noise drive: stroke (1um) or voltage (5V). Default: 1 % of each stroke."),
+        text_option("--drive-rms", "VALUE", "Rms of the noise drive, e.g. 1um, 5V, 0.1A or 1N. Default: 1 % of each range."),
     ] = None,
     band: Annotated[tuple[str, str] | None, band_option("0 to 0.4 times the rate")] = None,
     actuators: Annotated[list[str] | None, text_option("--actuator", "NAME", "Driven actuator. Repeatable. Default: all.")] = None,
@@ -65,8 +65,11 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     ] = InputSignal.MONITOR,
     delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="How much later gauges are recorded, e.g. 1ms.")] = "0 s",
     input_quantity: Annotated[
-        InputQuantity, word_option("--input-quantity", InputQuantity, "Quantity of the recorded inputs: stroke in um, or voltage in V.")
-    ] = InputQuantity.STROKE,
+        InputQuantity | None,
+        word_option(
+            "--input-quantity", InputQuantity, "Quantity of the recorded inputs. Default: the actuator's own, e.g. stroke or current."
+        ),
+    ] = None,
     model: ModelName = Model.LUMPED,
     changes: Changes = None,
 ) -> None:
@@ -74,7 +77,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 
     White noise in the actuators, through amplifier, stage, gauges with noise, drift and steps, anti-alias filter and sampling.
 
-    Same seed, same file. `flexstage identify` finds the modes in it as in any record.
+    Equal seeds give equal files. `flexstage identify` finds the modes in it as in any record.
     """
     mechanism = open_design(design, changes, [("--output", output)])
     values = Values()
@@ -104,10 +107,14 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 
 
 def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, actuators: list[str] | None) -> NoiseDrive:
-    amount = None if drive_rms is None else first_that_parses(drive_rms, {"stroke": DISPLACEMENT, "voltage": VOLTAGE})
+    amount = (
+        None
+        if drive_rms is None
+        else first_that_parses(drive_rms, {"stroke": DISPLACEMENT, "voltage": VOLTAGE, "current": CURRENT, "force": FORCE})
+    )
     if drive_rms is not None and amount is None:
-        what = f'found "{drive_rms}", which is no displacement or voltage'
-        values.findings.append(Finding("--drive-rms", what, 'Write for example "1 um" or "5 V"'))
+        what = f'no displacement, voltage, current or force (got "{drive_rms}")'
+        values.findings.append(Finding("--drive-rms", what, 'Use e.g. "1 um", "5 V" or "0.1 A"'))
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(
         **dict([amount] if amount else []),

@@ -21,8 +21,11 @@ from flexstage.experiment.records.unit import same_dimension, unit_problem
 
 _STILL, _STILL_SHARE = 32, 0.05
 _DEAD_BESIDE_OTHERS = 1e-5
-_PILE, _PILE_RATIO, _LEVELS = 8, 2.5, 16
-"""A quantised sine, not clipped, has at most 2.4 times as many samples on its highest level as on the next."""
+_PILE, _PILE_RATIO, _MISSED, _LEVELS = 8, 2.5, 2, 16
+"""A quantised sine, not clipped, is at most 2.4 times as long on its highest level as on the next.
+
+Of the next level, sampling may miss a sample on either side.
+"""
 _EXPLAINED, _TIE = 0.9, 1e-6
 _SEGMENTS_AN_INPUT = 5
 _BROKEN_SHARE = 0.5
@@ -248,7 +251,7 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers) -> str | None:
         ("least", numbers.low, numbers.pairs[0], -numbers.lows),
     ):
         at, after = count_ends(tail)
-        if pair == value and at >= _PILE and at > _PILE_RATIO * after:
+        if pair == value and at >= _PILE and at > _PILE_RATIO * (after + _MISSED):
             return f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {_with_unit(value, channel)}"
     return None
 
@@ -308,7 +311,7 @@ def _name_faults(
         for channel in channels if expected is not None else ():
             if channel.name not in known:
                 advice = f'{suggest_nearest(channel.name, known)}; rename it, or accept "names" to leave it out'
-                yield _fault(FaultTolerance.NAMES, where, channel.name, f"the stage has no {kind} of this name", advice)
+                yield _fault(FaultTolerance.NAMES, where, channel.name, f"unknown {kind}", advice)
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"
                 yield _fault(

@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.records.record import Channel
 from flexstage.experiment.records.unit import unit_problem
-from flexstage.experiment.virtual_rig.plan import drivable_actuators, volts_per_metre
+from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantity
+from flexstage.experiment.virtual_rig.plan import drivable_actuators, input_factor
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 
@@ -24,17 +25,21 @@ _SKIPPED = 2
 _FEWEST = 8
 _NEIGHBOURS = 1.94
 """Lines per independent one: Hann's neighbours share (2/3)^2 and (1/6)^2 of their variance on either side."""
-_LENGTH, _VOLTAGE = dimension_of("m"), dimension_of("V")
+_LENGTH, _ANGLE, _VOLTAGE = dimension_of("m"), dimension_of("rad"), dimension_of("V")
 
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """Static gains (p, m) in m per m of free stroke, and the standard deviations of their noise."""
+    """Static gains (p, m) in SI units of reading per input (free stroke, current or force), and the standard deviations of their noise.
+
+    `units` (p, m) are those of the gains.
+    """
 
     outputs: tuple[str, ...]
     inputs: tuple[str, ...]
     values: Array
     deviations: Array
+    units: tuple[tuple[str, ...], ...]
 
     @property
     def scale(self) -> Array:
@@ -47,28 +52,30 @@ class Gains:
 
 
 def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identified, outputs: tuple[str, ...]) -> Gains:
-    """Gains of the named outputs to the record's inputs that are strokes of the stage.
+    """Gains of the named outputs to the record's inputs that are actuators of the stage.
 
     The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2), least squares: the lowest mode exactly, higher
     ones, lags and an amplifier's bandwidth by even powers; a is the gain. Drives in volts count by their stack's stroke over its range
-    of voltage. Raises `DesignError` where no input is a stroke, no unit leads to metres, or too few lines are below the modes.
+    of voltage. Raises `DesignError` where no input is an actuator, no unit leads to the model's, or too few lines are below the modes.
     """
-    strokes = drivable_actuators(mechanism, model)
-    inputs = tuple(channel.name for channel in experiment.inputs if channel.name in strokes)
+    known = drivable_actuators(mechanism, model)
+    inputs = tuple(channel.name for channel in experiment.inputs if channel.name in known)
     require(
-        Finding(channel.name, "no input of the record has the name of an actuator", suggest_nearest(channel.name, strokes))
+        Finding(channel.name, "no input of the record has the name of an actuator", suggest_nearest(channel.name, known))
         for channel in experiment.inputs
         if not inputs
     )
-    known = {channel.name: channel for channel in (*experiment.inputs, *experiment.outputs)}
-    require(_unit_findings(mechanism, [known[name] for name in (*inputs, *outputs)]))
+    channels = {channel.name: channel for channel in (*experiment.inputs, *experiment.outputs)}
+    sizes = {name: si_size(mechanism, channels[name]) for name in (*inputs, *outputs)}
+    require(_unit_findings([channels[name] for name, size in sizes.items() if not np.isfinite(size)]))
     rows = [[each.name for each in experiment.responses.outputs].index(name) for name in outputs]
     columns = [[each.name for each in experiment.responses.inputs].index(name) for name in inputs]
     lines, values = _low_lines(experiment)
     fitted, deviations = _extrapolate_to_zero(lines, np.real(values[:, rows][:, :, columns]))
-    top = np.array([metres(mechanism, known[name]) for name in outputs])[:, None]
-    scale = top / np.array([metres(mechanism, known[name]) for name in inputs])
-    return Gains(outputs, inputs, fitted * scale, deviations * scale)
+    scale = np.array([sizes[name] for name in outputs])[:, None] / np.array([sizes[name] for name in inputs])
+    si = {channel.name: channel.unit for channel in (*model.outputs, *model.inputs)}
+    units = tuple(tuple(f"{si[row]}/{si[column]}" for column in inputs) for row in outputs)
+    return Gains(outputs, inputs, fitted * scale, deviations * scale, units)
 
 
 def _low_lines(experiment: Identified) -> tuple[Array, Array]:
@@ -94,32 +101,29 @@ def _extrapolate_to_zero(lines: Array, values: Array) -> tuple[Array, Array]:
     return found[0].reshape(values.shape[1:]), np.sqrt(spread * share).reshape(values.shape[1:])
 
 
-def _unit_findings(mechanism: Mechanism, channels: list[Channel]) -> list[Finding]:
-    advice = "State the channel's unit as a length or, of a drive, in volts, or compare without gains"
-    return [
-        Finding(channel.name, f'its unit "{channel.unit}" leads to no stroke or gap in metres', advice)
-        for channel in channels
-        if not np.isfinite(metres(mechanism, channel))
-    ]
+def _unit_findings(channels: list[Channel]) -> list[Finding]:
+    advice = "State the unit of a stroke, voltage, current or force, or that of the gauge, or compare without gains"
+    return [Finding(channel.name, f'its unit "{channel.unit}" leads to no reading or input of the stage', advice) for channel in channels]
 
 
-def is_length(unit: str) -> bool:
-    """Whether a unit is one of length.
+def is_voltage(unit: str) -> bool:
+    """Whether a unit is one of voltage.
 
-    >>> is_length("um"), is_length("mV"), is_length("")
-    (True, False, False)
+    >>> is_voltage("um"), is_voltage("mV"), is_voltage("")
+    (False, True, False)
     """
-    return unit_problem(unit) is None and dimension_of(unit).powers == _LENGTH.powers
+    return unit_problem(unit) is None and dimension_of(unit).powers == _VOLTAGE.powers
 
 
-def metres(mechanism: Mechanism, channel: Channel) -> float:
-    """Metres per unit of a channel; NaN where its unit leads to none."""
+def si_size(mechanism: Mechanism, channel: Channel) -> float:
+    """SI units of the stage's gauge or actuator input per unit of a channel; NaN where its unit leads to none."""
     if unit_problem(channel.unit) is not None:
         return float("nan")
     unit = dimension_of(channel.unit)
-    if unit.powers == _LENGTH.powers:
-        return float(unit.size / _LENGTH.size)
-    known = stacks(mechanism)
-    if unit.powers == _VOLTAGE.powers and channel.name in known:
-        return float(unit.size / _VOLTAGE.size) / volts_per_metre(known[channel.name])
-    return float("nan")
+    if channel.name not in expand(mechanism).actuators:
+        return float(unit.size) if unit.powers in (_LENGTH.powers, _ANGLE.powers) else float("nan")
+    quantity = next((key for key, name in RECORDED_UNITS.items() if dimension_of(name).powers == unit.powers), None)
+    if quantity is None:
+        return float("nan")
+    size = unit.size / dimension_of("m" if quantity is InputQuantity.STROKE else RECORDED_UNITS[quantity]).size
+    return float(size) / input_factor(mechanism, channel.name, quantity)

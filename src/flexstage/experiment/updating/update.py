@@ -67,7 +67,7 @@ _REMAINING = Heading("remaining variance", digits=2, unit="%")
 
 @dataclass(frozen=True)
 class Residual:
-    """One datum [Hz, or m/m for gains]: measured, by theory before and after, and the relative standard deviation it was weighted with.
+    """One datum [Hz, or of gains reading per input]: measured, by theory before and after, with its relative standard deviation.
 
     That of a gain is relative to the largest gain of its actuator, `scale`.
     """
@@ -364,7 +364,7 @@ class _Data:
         for (row, column), value in np.ndenumerate(self.gains.values):
             name = f"gain {self.gains.outputs[row]}/{self.gains.inputs[column]}"
             numbers = (float(value), float(errors[row, column]), float(first[row, column]), float(last[row, column]))
-            yield Residual(name, "m/m", *numbers, float(scale[column]))
+            yield Residual(name, self.gains.units[row][column], *numbers, float(scale[column]))
 
     def _gain_errors(self, gains: Gains) -> Array:
         return gains.errors(self.known.gain_error or 0.0)

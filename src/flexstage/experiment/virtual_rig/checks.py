@@ -9,8 +9,8 @@ import numpy as np
 from flexstage.analysis.complete import platform_modes
 from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.experiment.virtual_rig.chain import Chain
-from flexstage.experiment.virtual_rig.inputs import InputQuantity
-from flexstage.experiment.virtual_rig.plan import Plan, drivable_actuators
+from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantity
+from flexstage.experiment.virtual_rig.plan import TAPER, DrivenInput, Plan, drivable_actuators
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.checks.value import number_findings
@@ -32,7 +32,7 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     >>> from flexstage.models.mapped import mapped
     >>> stage = double_triangle()
     >>> [str(each) for each in setup_findings(stage, mapped(stage), RigSetup(seconds=0.0))]
-    ['seconds: found 0 s, which is not greater than 0 s. Write for example "0.1 s".']
+    ['seconds: must be greater than 0 s (got 0 s). Use e.g. "0.1 s".']
     """
     if model.stiffness_matrix.ndim > 2:
         yield Finding("stage", "it is a batch of designs", "Test one design at a time")
@@ -42,8 +42,9 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     yield from _clock_findings(mechanism, model, setup)
     yield from _channel_findings(mechanism, model, setup)
     drive, amplifier, order = setup.drive, setup.amplifier, setup.filter.order
-    if drive.stroke is not None and drive.voltage is not None:
-        yield Finding("drive", "its rms is given as a stroke and as a voltage", "Give one of them")
+    if len(drive.amounts) > 1:
+        named = " and as a ".join(each.value for each in drive.amounts)
+        yield Finding("drive", f"its rms is given as a {named}", "Give one of them")
     if drive.band is not None and not drive.band[0] < drive.band[1]:
         yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Give 0 <= low < high in Hz")
     if amplifier.bandwidth is not None and amplifier.resistance is not None:
@@ -56,21 +57,23 @@ def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -
     if setup.seed < 0:
         yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
     highest = platform_modes(mechanism, model).highest
-    if setup.rate is not None and 0.0 < setup.rate < 2.0 * highest:
+    top = np.inf if setup.drive.band is None else (1.0 + TAPER) * setup.drive.band[1]
+    if setup.rate is not None and 0.0 < setup.rate < 2.0 * min(highest, top):
         what = f"the sampling rate of {setup.rate:g} Hz is below twice the highest platform mode, {highest:.4g} Hz"
-        yield Finding("rate", what, f"Sample at {2.0 * highest:.4g} Hz at least, better at {10.0 * highest:.0f} Hz")
+        faster = f"Sample at {2.0 * highest:.4g} Hz at least, better at {10.0 * highest:.0f} Hz"
+        yield Finding("rate", what, f"{faster}, or drive in a band up to {0.4 * setup.rate:g} Hz")
 
 
 def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
     known = drivable_actuators(mechanism, model)
     asked = setup.drive.actuators
     if not known:
-        yield Finding("actuators", "the stage has no piezo stack to be driven", "Add one")
+        yield Finding("actuators", "the stage has no piezo stack or force actuator to be driven", "Add one")
     elif asked is not None and not asked:
         yield Finding("actuators", "none is to be driven", f"Name at least one: {', '.join(known)}")
     for name in dict.fromkeys(asked or ()):
         if name not in known:
-            yield Finding(f"actuator {name}", "the stage has no actuator of this name", suggest_nearest(name, known))
+            yield Finding(f"actuator {name}", "unknown actuator", suggest_nearest(name, known))
         elif asked is not None and asked.count(name) > 1:
             yield Finding(f"actuator {name}", f"it is named {asked.count(name)} times", "Name it once")
     if not expand(mechanism).gauges:
@@ -88,16 +91,34 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
     []
     """
     setup = plan.setup
-    for name, volts, capacitance in zip(plan.actuators, plan.volts, plan.capacitances, strict=True):
-        if np.isnan(volts) and (
-            setup.drive.voltage is not None or setup.input_quantity is InputQuantity.VOLTAGE or setup.amplifier.current is not None
-        ):
-            yield Finding(name, "its stack states no range of voltage", "State voltage_low and voltage_high, or use strokes")
-        if np.isnan(capacitance) and (setup.amplifier.resistance is not None or setup.amplifier.current is not None):
-            yield Finding(name, "its stack states no capacitance", "State it, or give the amplifier's bandwidth in Hz")
+    for name, each in zip(plan.actuators, plan.inputs, strict=True):
+        yield from (_stack_findings if each.own is InputQuantity.STROKE else _thrust_findings)(name, each, setup)
     if not _FEWEST <= plan.length < _MOST:
         what = f"{setup.seconds:g} s at {plan.rate:g} Hz are {plan.length:.3g} samples"
         yield Finding("seconds", what, f"Record between {_FEWEST} and {_MOST:.2g} samples")
+
+
+def _stack_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterator[Finding]:
+    requested = {*setup.drive.amounts, setup.input_quantity} - {None}
+    if requested & {InputQuantity.CURRENT, InputQuantity.FORCE}:
+        yield Finding(name, "the input of its stack is a stroke or a voltage", 'Use these, for example --drive-rms "1 um"')
+    if np.isnan(driven.factor(InputQuantity.VOLTAGE)) and (InputQuantity.VOLTAGE in requested or setup.amplifier.current is not None):
+        yield Finding(name, "its stack states no range of voltage", "State voltage_low and voltage_high, or use strokes")
+    if np.isnan(driven.capacitance) and (setup.amplifier.resistance is not None or setup.amplifier.current is not None):
+        yield Finding(name, "its stack states no capacitance", "State it, or give the amplifier's bandwidth in Hz")
+
+
+def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterator[Finding]:
+    own = " or ".join(dict.fromkeys((driven.own.value, *(each.value for each in driven.factors))))
+    example = f"1 {RECORDED_UNITS[driven.own]}"
+    requested = (*setup.drive.amounts, *([setup.input_quantity] if setup.input_quantity else []))
+    for quantity in dict.fromkeys(requested):
+        if np.isnan(driven.factor(quantity)):
+            yield Finding(name, f"its input is a {own}, not a {quantity.value}", f'Use that, for example --drive-rms "{example}"')
+    if not setup.drive.amounts and np.isnan(driven.full):
+        yield Finding(name, "it states no limit, and the default drive is 1 % of it", f'Use for example --drive-rms "{example}"')
+    if setup.amplifier.resistance is not None:
+        yield Finding(name, "an output resistance needs a stack's capacitance", "Give the amplifier's bandwidth in Hz")
 
 
 def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
@@ -114,17 +135,24 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     >>> print(next(range_findings(plan, chain(model, plan, model.damping))))
     B1: peaks of 6 x 20 um rms pass the stroke of -75 um to 75 um. Drive with 12.5 um rms at most.
     """
-    for name, rms, low, high in zip(plan.actuators, plan.rms, plan.low, plan.high, strict=True):
-        if _PEAK * rms > min(-low, high):
-            what = f"peaks of 6 x {1e6 * rms:.4g} um rms pass the stroke of {1e6 * low:.4g} um to {1e6 * high:.4g} um"
-            yield Finding(name, what, f"Drive with {1e6 * min(-low, high) / _PEAK:.4g} um rms at most")
-    currents = plan.capacitances * plan.volts * chain.stroke_rate_rms
     limit = plan.setup.amplifier.current
-    for name, rms in zip(plan.actuators, currents, strict=True):
-        if limit is not None and _PEAK * rms > limit:
-            what = f"peaks of 6 x {rms:.4g} A rms pass the amplifier's {limit:.4g} A"
-            yield Finding(name, what, "Drive less, in a narrower band, or with a stronger amplifier")
+    for name, driven, rms, rate in zip(plan.actuators, plan.inputs, plan.rms, chain.stroke_rate_rms, strict=True):
+        scale = 1e6 if driven.own is InputQuantity.STROKE else 1.0
+        unit, low, high = RECORDED_UNITS[driven.own], scale * driven.low, scale * driven.high
+        if _PEAK * scale * rms > min(-low, high):
+            what = f"peaks of 6 x {scale * rms:.4g} {unit} rms pass the {driven.own.value} of {low:.4g} {unit} to {high:.4g} {unit}"
+            yield Finding(name, what, f"Drive with {min(-low, high) / _PEAK:.4g} {unit} rms at most")
+        if rms > driven.sustained:
+            yield Finding(name, f"{rms:.4g} {unit} rms pass the sustained {driven.sustained:.4g} {unit}", "Drive less")
+        current = {InputQuantity.STROKE: driven.capacitance * driven.factor(InputQuantity.VOLTAGE) * rate, InputQuantity.CURRENT: rms}
+        yield from _current_findings(name, current.get(driven.own, 0.0), limit)
     yield from _gauge_findings(plan, chain)
+
+
+def _current_findings(name: str, rms: float, limit: float | None) -> Iterator[Finding]:
+    if limit is not None and _PEAK * rms > limit:
+        what = f"peaks of 6 x {rms:.4g} A rms pass the amplifier's {limit:.4g} A"
+        yield Finding(name, what, "Drive less, in a narrower band, or with a stronger amplifier")
 
 
 def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:

@@ -10,6 +10,16 @@ class InputQuantity(Enum):
     """Free stroke in um."""
     VOLTAGE = "voltage"
     """Voltage in V, counted from the bias."""
+    CURRENT = "current"
+    """Current of a coil in A."""
+    FORCE = "force"
+    """Force in N."""
+
+
+RECORDED_UNITS = {InputQuantity.STROKE: "um", InputQuantity.VOLTAGE: "V", InputQuantity.CURRENT: "A", InputQuantity.FORCE: "N"}
+"""Unit of the recorded inputs by quantity."""
+OWN_QUANTITIES = {"m": InputQuantity.STROKE, "A": InputQuantity.CURRENT, "N": InputQuantity.FORCE}
+"""Quantity of an actuator's input by its SI unit."""
 
 
 class InputSignal(Enum):

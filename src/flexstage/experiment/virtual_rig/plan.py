@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.workspace.stroke import stacks, stroke_limits
+from flexstage.analysis.workspace.stroke import StrokeLimits, stacks, stroke_limits
 from flexstage.base.number import Array, Number
+from flexstage.experiment.virtual_rig.inputs import OWN_QUANTITIES, InputQuantity
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.parts.actuator import ChargedActuator
+from flexstage.parts.actuator import Actuator, ChargedActuator, ThrustActuator
 
 _DEFAULT_SHARE = 0.01
 _RATE_OVER_HIGHEST = 10.0
@@ -23,12 +25,33 @@ TAPER = 0.25
 
 
 @dataclass(frozen=True, eq=False)
+class DrivenInput:
+    """Input of a driven actuator: free stroke [m] of a stack, current [A] or force [N] of a force actuator.
+
+    `own` is its quantity. `low` and `high` bound peaks, `sustained` bounds the rms; infinite: no limit is stated. `full` is the range for
+    the default drive (NaN: unknown). `factors` convert the input to other quantities. `lag` [Hz] is the coil's own (infinite: none).
+    """
+
+    own: InputQuantity
+    low: float
+    high: float
+    full: float
+    factors: Mapping[InputQuantity, float]
+    sustained: float = np.inf
+    capacitance: float = np.nan
+    lag: float = np.inf
+
+    def factor(self, quantity: InputQuantity | None) -> float:
+        """The input in a quantity per unit of the input; NaN where it is not known, 1 in its own."""
+        return 1.0 if quantity is None or quantity is self.own else self.factors.get(quantity, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
 class Plan:
     """A set-up with everything settled, by driven actuator (m,) and by single gauge (p,) with the `units` of its reading, SI.
 
-    `rms` of the commanded free stroke, `low` and `high` end of the stroke; `bandwidths` of amplifiers (infinite: ideal), `lags` those of
-    gauges, `walks` what these drift in a minute; `volts` per metre of free stroke (NaN where the stack states no voltage); `highest`
-    platform mode [Hz].
+    `rms` of the commanded `inputs`; `bandwidths` of amplifiers (infinite: ideal), `lags` those of gauges, `walks` what these drift in a
+    minute; `highest` platform mode [Hz].
     """
 
     setup: RigSetup
@@ -39,11 +62,8 @@ class Plan:
     band: tuple[float, float]
     corner: float
     highest: float
+    inputs: tuple[DrivenInput, ...]
     rms: Array
-    low: Array
-    high: Array
-    volts: Array
-    capacitances: Array
     bandwidths: Array
     densities: Array
     steps: Array
@@ -55,6 +75,11 @@ class Plan:
     def length(self) -> int:
         """Number of samples of each channel."""
         return round(self.setup.seconds * self.rate)
+
+    @property
+    def recorded(self) -> tuple[InputQuantity, ...]:
+        """The recorded quantity of each input."""
+        return tuple(self.setup.input_quantity or each.own for each in self.inputs)
 
 
 def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
@@ -68,15 +93,12 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
     (2048.0, [1.5, 1.5, 1.5, 2.0, 2.0, 2.0], [10.0, 10.0])
     """
     names = setup.drive.actuators if setup.drive.actuators is not None else drivable_actuators(mechanism, model)
-    limits = stroke_limits(mechanism)
-    places = [limits.actuators.index(name) for name in names]
-    piezos = [stacks(mechanism)[name] for name in names]
+    inputs = driven_inputs(mechanism, names)
     gauges = {name: placed.gauge for name, placed in expand(mechanism).gauges.items() if not placed.members}
     metres = np.array([gauge.quantity.si == "m" for gauge in gauges.values()])
     highest = platform_modes(mechanism, model).highest
     rate = setup.rate if setup.rate is not None else 2.0 ** np.ceil(np.log2(_RATE_OVER_HIGHEST * highest))
-    volts = np.array([volts_per_metre(piezo) for piezo in piezos])
-    capacitances = np.array([np.nan if piezo.capacitance is None else float(np.real(piezo.capacitance)) for piezo in piezos])
+    cutoffs = setup.amplifier.cutoff(np.array([each.capacitance for each in inputs]))
     return Plan(
         setup=setup,
         actuators=tuple(names),
@@ -86,12 +108,9 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
         band=setup.drive.band if setup.drive.band is not None else (0.0, _BAND_SHARE * float(rate)),
         corner=setup.filter.corner if setup.filter.corner is not None else _BAND_SHARE * float(rate),
         highest=highest,
-        rms=_commanded_rms(setup, piezos, volts),
-        low=np.real(limits.low[places]),
-        high=np.real(limits.high[places]),
-        volts=volts,
-        capacitances=capacitances,
-        bandwidths=setup.amplifier.cutoff(capacitances),
+        inputs=inputs,
+        rms=np.array([_commanded_rms(setup, each) for each in inputs]),
+        bandwidths=np.minimum(cutoffs, [each.lag for each in inputs]),
         densities=_asked(setup.sensing.density, metres, _stated([gauge.noise_density for gauge in gauges.values()], 0.0)),
         steps=_asked(setup.sensing.resolution, metres, _stated([gauge.resolution for gauge in gauges.values()], 0.0)),
         lags=_stated([gauge.bandwidth for gauge in gauges.values()], np.inf),
@@ -101,15 +120,61 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
 
 
 def drivable_actuators(mechanism: Mechanism, model: LinearModel) -> tuple[str, ...]:
-    """Actuators that can be driven: strokes of the model that are piezo stacks.
+    """Actuators that can be driven: inputs of the model that are piezo stacks or force actuators.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
     >>> drivable_actuators(parallelogram(), lumped(parallelogram()))
     ('B',)
     """
-    known = stacks(mechanism)
-    return tuple(name for name in model.strokes if name in known)
+    known = (*stacks(mechanism), *expand(mechanism).thrusts)
+    return tuple(name for name in model.actuators if name in known)
+
+
+def driven_inputs(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[DrivenInput, ...]:
+    """Inputs of piezo stacks and force actuators.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> (found,) = driven_inputs(double_triangle(), ("B4",))
+    >>> round(found.high * 1e6), round(found.factor(InputQuantity.VOLTAGE))
+    (100, 5000000)
+    """
+    limits, assembly = stroke_limits(mechanism), expand(mechanism)
+    return tuple(_driven_input(assembly.actuator(name), limits, name) for name in names)
+
+
+def input_factor(mechanism: Mechanism, name: str, quantity: InputQuantity) -> float:
+    """A quantity per unit of an actuator's input; NaN where it is not known.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(input_factor(double_triangle(), "B4", InputQuantity.VOLTAGE))
+    5000000
+    """
+    known = name in (*stacks(mechanism), *expand(mechanism).thrusts)
+    if not known:
+        return 1.0 if quantity is InputQuantity.STROKE else float("nan")
+    return driven_inputs(mechanism, (name,))[0].factor(quantity)
+
+
+def _driven_input(part: Actuator, limits: StrokeLimits, name: str) -> DrivenInput:
+    if isinstance(part, ChargedActuator):
+        low, high = (float(np.real(each[limits.actuators.index(name)])) for each in (limits.low, limits.high))
+        capacitance = np.nan if part.capacitance is None else float(np.real(part.capacitance))
+        volts = {InputQuantity.VOLTAGE: volts_per_metre(part)}
+        return DrivenInput(InputQuantity.STROKE, low, high, float(np.real(part.stroke)), volts, capacitance=capacitance)
+    assert isinstance(part, ThrustActuator)  # noqa: S101  `drivable_actuators` has no other
+    known = list(part.limits)
+    high = min((float(np.real(each.short)) for each in known if each.clips and each.short is not None), default=np.inf)
+    held = min((float(np.real(each.held)) for each in known if each.held is not None), default=np.inf)
+    return DrivenInput(
+        own=OWN_QUANTITIES[part.input.si],
+        low=-high,
+        high=high,
+        full=held if np.isfinite(held) else np.nan,
+        factors={InputQuantity.FORCE: float(np.real(part.thrust))},
+        sustained=held,
+        lag=np.inf if part.cutoff is None else float(np.real(part.cutoff)),
+    )
 
 
 def volts_per_metre(piezo: ChargedActuator) -> float:
@@ -124,12 +189,10 @@ def volts_per_metre(piezo: ChargedActuator) -> float:
     return float(np.real((piezo.voltage_high - piezo.voltage_low) / piezo.stroke))
 
 
-def _commanded_rms(setup: RigSetup, piezos: list[ChargedActuator], volts: Array) -> Array:
-    if setup.drive.stroke is not None:
-        return np.full(len(piezos), setup.drive.stroke)
-    if setup.drive.voltage is not None:
-        return setup.drive.voltage / volts
-    return np.array([_DEFAULT_SHARE * float(np.real(piezo.stroke)) for piezo in piezos])
+def _commanded_rms(setup: RigSetup, driven: DrivenInput) -> float:
+    for quantity, value in setup.drive.amounts.items():
+        return value / driven.factor(quantity)
+    return _DEFAULT_SHARE * driven.full
 
 
 def _stated(values: list[Number | None], otherwise: float) -> Array:

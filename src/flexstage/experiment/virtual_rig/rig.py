@@ -9,7 +9,7 @@ from flexstage.base.finding import require
 from flexstage.experiment.records.record import Channel, Record, Role
 from flexstage.experiment.virtual_rig.chain import chain
 from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
-from flexstage.experiment.virtual_rig.inputs import InputQuantity
+from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantity
 from flexstage.experiment.virtual_rig.plan import Plan, plan_test
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.experiment.virtual_rig.setup import RigSetup
@@ -22,7 +22,7 @@ _MICROMETRE = 1e6
 
 @check_arguments
 def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Record:
-    """The record of a virtual test: strokes or voltages in, gauges out, by name and with units.
+    """The record of a virtual test: strokes, voltages, currents or forces in, gauges out, by name and with units.
 
     `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` instead of the model's own. Each driven actuator has
     band-limited Gaussian noise, through the amplifier 1/(1 + j f/f_a); gauges read the stage's motion through their own lag, with noise,
@@ -60,7 +60,8 @@ def simulate_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, 
     require(plan_findings(plan))
     found = chain(model, plan, law)
     require(range_findings(plan, found))
-    scale = plan.volts if setup.input_quantity is InputQuantity.VOLTAGE else np.full(len(plan.actuators), _MICROMETRE)
+    recorded = zip(plan.inputs, plan.recorded, strict=True)
+    scale = np.array([_MICROMETRE if quantity is InputQuantity.STROKE else each.factor(quantity) for each, quantity in recorded])
     source = f"seed {setup.seed}; {found.note}; {mechanism.name or 'stage'}; {model.provenance}"  # forms cut names: what matters first
     return Simulated(plan, found, scale, _MICROMETRE, source)
 
@@ -78,6 +79,5 @@ def as_record(test: Simulated) -> Record:
 
 
 def _channels(plan: Plan) -> tuple[Channel, ...]:
-    unit = "V" if plan.setup.input_quantity is InputQuantity.VOLTAGE else "um"
-    inputs = (Channel(name, unit, Role.INPUT) for name in plan.actuators)
+    inputs = (Channel(name, RECORDED_UNITS[each], Role.INPUT) for name, each in zip(plan.actuators, plan.recorded, strict=True))
     return (*inputs, *(Channel(name, f"u{read}", Role.OUTPUT) for name, read in zip(plan.gauges, plan.units, strict=True)))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, TIME, VOLTAGE
+from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FORCE, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, TIME, VOLTAGE
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.parts.amplifier import Amplifier
 
@@ -15,15 +15,27 @@ from flexstage.parts.amplifier import Amplifier
 class NoiseDrive(CheckedFields):
     """Gaussian noise that drives the actuators, each its own.
 
-    `stroke` is the rms of the commanded free stroke [m], or `voltage` that of the command [V]; without either it is 1 % of each stack's
-    full stroke. The density is flat within `band` (low, high) [Hz] and falls to nought from `low` to `low`/2 and from `high` to 1.25 `high`
-    (absent: 0 to 0.4 times the sampling rate). `actuators` names those that are driven (absent: all); only they are recorded.
+    `stroke` is the rms of the commanded free stroke [m], `voltage` that of the command [V], `current` [A] or `force` [N] that of a force
+    actuator's input. Without any, it is 1 % of each full stroke, or of the largest sustained input of a force actuator. The density is
+    flat within `band` (low, high) [Hz] and falls to zero from `low` to `low`/2 and from `high` to 1.25 `high` (absent: 0 to 0.4 times the
+    sampling rate). `actuators` names those that are driven (absent: all); only they are recorded.
     """
 
     stroke: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
     voltage: Annotated[float, VOLTAGE, POSITIVE] | None = None
+    current: Annotated[float, CURRENT, POSITIVE] | None = None
+    force: Annotated[float, FORCE, POSITIVE] | None = None
     band: tuple[Annotated[float, FREQUENCY, NOT_NEGATIVE], Annotated[float, FREQUENCY, POSITIVE]] | None = None
     actuators: tuple[str, ...] | None = None
+
+    @property
+    def amounts(self) -> dict[InputQuantity, float]:
+        """The specified rms values by quantity.
+
+        >>> NoiseDrive(current=0.1).amounts
+        {<InputQuantity.CURRENT: 'current'>: 0.1}
+        """
+        return {quantity: value for quantity in InputQuantity if (value := getattr(self, quantity.value)) is not None}
 
 
 @dataclass(frozen=True)
@@ -53,7 +65,7 @@ class RigSetup(CheckedFields):
 
     A test whose peaks ask for more than the amplifier's current is refused, since a saturated amplifier is not linear.
     Without a rate it is the least power of two that is ten times the highest platform mode. The same set-up of the same stage gives
-    the same record, to the bit.
+    the same record, to the bit. Without `input_quantity`, each recorded input is the actuator's own: stroke, current or force.
 
     >>> RigSetup(seconds=10.0).filter.order
     8
@@ -67,5 +79,5 @@ class RigSetup(CheckedFields):
     filter: AntiAlias = field(default_factory=AntiAlias)
     sensing: Sensing = field(default_factory=Sensing)
     input_signal: InputSignal = InputSignal.MONITOR
-    input_quantity: InputQuantity = InputQuantity.STROKE
+    input_quantity: InputQuantity | None = None
     delay: Annotated[float, TIME, NOT_NEGATIVE] = 0.0

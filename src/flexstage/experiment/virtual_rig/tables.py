@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexstage.experiment.virtual_rig.inputs import InputQuantity
+from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantity
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.show.display import format_value, number
 from flexstage.show.table import Cell, Mark, Table, make_table
@@ -19,11 +19,10 @@ def rig_table(test: Simulated) -> Table:
     >>> rig_table(simulate_test(stage, mapped(stage), RigSetup(seconds=1.0))).texts()[-1]
     ['S6', 'output', 'um', '19.53 um', '10 nm']
     """
-    plan, unit = test.plan, "V" if test.plan.setup.input_quantity is InputQuantity.VOLTAGE else "um"
-    volts = plan.setup.input_quantity is InputQuantity.VOLTAGE
+    plan = test.plan
     driven = [
-        (Cell(name, Mark.STRONG), "input", unit, format_value(rms * (scale if volts else 1.0), "V" if volts else "m", 4), "")
-        for name, rms, scale in zip(plan.actuators, test.chain.input_rms, test.input_scale, strict=True)
+        (Cell(name, Mark.STRONG), "input", RECORDED_UNITS[quantity], _rms(rms, scale, quantity), "")
+        for name, quantity, rms, scale in zip(plan.actuators, plan.recorded, test.chain.input_rms, test.input_scale, strict=True)
     ]
     read = [
         (Cell(name, Mark.STRONG), "output", f"u{read}", format_value(rms, read, 4), f"{1e9 * step:.4g} n{read}" if step else "")
@@ -37,3 +36,8 @@ def rig_table(test: Simulated) -> Table:
     return make_table(
         "Virtual test", ["channel", "role", "unit", "expected rms", "step"], [*driven, *read], notes=[note], provenance=test.source
     )
+
+
+def _rms(rms: float, scale: float, quantity: InputQuantity) -> str:
+    own = quantity is InputQuantity.STROKE
+    return format_value(rms if own else rms * scale, "m" if own else RECORDED_UNITS[quantity], 4)

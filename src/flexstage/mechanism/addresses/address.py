@@ -167,7 +167,7 @@ def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
     """
     address, equals, text = assignment.partition("=")
     if not equals:
-        raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Write for example "parts.neck.thickness=1.4 mm"')
+        raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Use e.g. "parts.neck.thickness=1.4 mm"')
     return set_text(mechanism, address, text)
 
 

@@ -132,7 +132,7 @@ def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: 
         start = Place(owners, (), RecordNode(Link), in_link=True) if departed else Place((), tree, RecordNode(Link))
         return _descend(link, address, start, steps)
     if link.part not in mechanism.parts:
-        raise refuse(address, f'there is no part "{link.part}"', suggest_nearest(link.part, mechanism.parts))
+        raise refuse(address, f'unknown part "{link.part}"', suggest_nearest(link.part, mechanism.parts))
     parts = node_of(Mechanism).fields["parts"].node
     start = Place(owners, (), parts.child(mechanism.parts, link.part))
     return _descend(mechanism.parts[link.part], address, start, steps)
@@ -145,7 +145,7 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
         if isinstance(value, Link) and not has_member(value, step):
             return _in_link(mechanism, address, path, _owners(path), steps[number:])
         if isinstance(value, NamedNumber):
-            raise refuse(address, f'there is no "{step}": {steps[number - 1]} is one number', "Address the number itself")
+            raise refuse(address, f'unknown name "{step}": {steps[number - 1]} is one number', "Address the number itself")
         for name in _complete(value, address, node, step, last=number == len(steps) - 1):
             node, value = node.child(value, name), member(value, name)
             path += (name,)
@@ -170,17 +170,17 @@ def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) ->
     if found:
         raise refuse(address, f'ambiguous name "{step}" (got {" or ".join(".".join(path) for path in found)})', "Use the full address")
     if value is None:
-        raise refuse(address, f'there is no "{step}": what holds it is not given', "Give it first")
-    raise refuse(address, f'there is no "{step}"', suggest_nearest(step, _names(value)))
+        raise refuse(address, f'unknown name "{step}": what holds it is not given', "Give it first")
+    raise refuse(address, f'unknown name "{step}"', suggest_nearest(step, _names(value)))
 
 
 def _component(value: Any, address: str, node: Node, step: str) -> str:
     if isinstance(node, NumbersNode):
         if step.isdecimal() and has_member(value, step):
             return step
-        raise refuse(address, f'there is no number "{step}"', f"They are counted from 0 to {len(value) - 1}")
+        raise refuse(address, f'unknown number "{step}"', f"They are counted from 0 to {len(value) - 1}")
     if not node.components or not has_member(value, step):
-        raise refuse(address, f'there is no component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
+        raise refuse(address, f'unknown component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
     return COMPONENTS[int(step)] if step in "012345" else step
 
 

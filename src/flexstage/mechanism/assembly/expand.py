@@ -342,7 +342,7 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
             continue
         wanted = place if link.start is None and link.end is None else ends
         for name in [name for name, value in wanted.items() if value is None]:
-            advice = "Give both from and to, or at and along" if wanted is ends else f"Write for example {name} = {_EXAMPLES[name]}"
+            advice = "Give both from and to, or at and along" if wanted is ends else f"Use e.g. {name} = {_EXAMPLES[name]}"
             yield Finding(where, f"{name} missing", advice)
 
 
@@ -350,7 +350,7 @@ def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     """Return errors for unknown parts, materials, units and sensors, and for wrong ports of links.
 
     >>> print(*unknown_names(Mechanism("", links={"strut": Link(("ground", "platform"), "wire")})))
-    links.strut.part: there is no part "wire". There are none.
+    links.strut.part: unknown part "wire". None is defined.
     """
     parts = mechanism.parts
     yield from unknown_entries({section: getattr(mechanism, section) for section in NAMED})
@@ -362,13 +362,13 @@ def unknown_entries(sections: Mapping[str, Any]) -> Iterator[Finding]:
     """Materials, parts, units and sensors that the entries of sections, of a description or of a file's tree, name and do not have.
 
     >>> print(*unknown_entries({"parts": {"leaf": {"material": "stel"}}, "materials": {"steel": {}}}))
-    parts.leaf.material: there is no material "stel". The nearest name is steel.
+    parts.leaf.material: unknown material "stel". Use steel.
     """
     for section in ("parts", "bodies", "links", "units", "placements", "gauges"):
         for where, home, name in references(sections.get(section, {}), section):
             known = sections.get(home, {})
             if name not in known:
-                yield Finding(where, f'there is no {home.removesuffix("s")} "{name}"', suggest_nearest(name, known))
+                yield Finding(where, f'unknown {home.removesuffix("s")} "{name}"', suggest_nearest(name, known))
 
 
 def _port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator[Finding]:
@@ -396,7 +396,7 @@ def _unknown_bodies(
     known = dict.fromkeys((*bodies, GROUND))
     ends = [(f"{link.name}.joins", body) for link in links for body in link.joins]
     ends += [(where, body) for where, item in looking.items() for body in (item.body, item.base or GROUND)]
-    yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
+    yield from (Finding(where, f'unknown body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
 
 
 def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:

@@ -105,7 +105,7 @@ def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, po
         yield Finding(f"{where}.pose.mirror", "a whole stage cannot be mirrored", "Mirror its units, in its own file")
     known = {GROUND, *placed_bodies(stage)}
     if on not in known:
-        yield Finding(f"{where}.on", f'there is no body "{on}"', suggest_nearest(on, known))
+        yield Finding(f"{where}.on", f'unknown body "{on}"', suggest_nearest(on, known))
     if _is_on_ground(stage, on):
         yield from _ground_findings(stage, name, carried)
     if on in {body for unit in drawn_units(carried).values() for body in unit.bodies}:
@@ -298,6 +298,6 @@ def _top(stage: Mechanism, carried: Mapping[str, Mount]) -> str | None:
     bearing = {item.on.partition("/")[0] for item in carried.values()}
     top = [name for name in carried if name not in bearing]
     if len(top) != 1:
-        what = f'there is no body "{PLATFORM}", and not one of the stages is on top of all others, but {", ".join(top) or "none"}'
+        what = f'unknown body "{PLATFORM}", and not one of the stages is on top of all others, but {", ".join(top) or "none"}'
         raise refuse("stages", what, f"Declare the moving part under bodies.{PLATFORM}")
     return top[0]

@@ -33,7 +33,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     searched if its names exist; matrix files are read if all else is valid.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
-    ['bodies: there is no body "platform". Declare the moving part under bodies.platform.']
+    ['bodies: unknown body "platform". Declare the moving part under bodies.platform.']
     """
     for ground in (kind_findings, copy_findings, place_findings):
         if findings := tuple(ground(mechanism)):
@@ -58,7 +58,7 @@ def require_valid(mechanism: Mechanism) -> Mechanism:
     >>> require_valid(Mechanism("empty"))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: bodies: there is no body "platform". Declare the moving part under bodies.platform.
+    flexstage.base.finding.DesignError: bodies: unknown body "platform". Declare the moving part under bodies.platform.
     """
     require(check(mechanism))
     return mechanism

@@ -44,7 +44,7 @@ def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterat
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.03, thickness=0.012, width=0.01)
     >>> print(*geometry_findings(Mechanism("", parts={"blade": leaf})))
-    parts.blade.thickness: found 12 mm, which is not below the width, 10 mm. Exchange them, or turn the link's bends.
+    parts.blade.thickness: must be below the width, 10 mm (got 12 mm). Exchange them, or turn the link's bends.
     """
     for name, material in mechanism.materials.items():
         yield from (replace(fault, where=f"materials.{name}.{fault.where}") for fault in material.faults)
@@ -134,7 +134,7 @@ def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
         if np.any(failing):
             at, values = first_failing(failing, small, large)
             found, other = (show(value, order.quantity, digits=6) for value in values)
-            what = f"found {found}, which is not {'below' if order.strict else 'at most'} {order.other}, {other}"
+            what = f"must be {'below' if order.strict else 'at most'} {order.other}, {other} (got {found})"
             yield Finding(f"{where}.{order.field}{at}", what, order.advice)
 
 

@@ -19,7 +19,7 @@ def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
     >>> from flexstage.parts.rod import Rod
     >>> class Wire(Rod): ...
     >>> print(*kind_findings(Mechanism("", parts={"wire": Wire("steel", length=0.03, diameter=0.001)})))
-    parts.wire: found Wire(... where ... Rod ... is expected. Give ...
+    parts.wire: must be ... Rod ... (got Wire(...). Use ...
     """
     return _unlisted(node_of(Mechanism), mechanism, "")
 
@@ -27,7 +27,7 @@ def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
 def _unlisted(node: Node, value: Any, where: str) -> Iterator[Finding]:
     if isinstance(node, RecordNode | UnionNode) and type(value) not in node.records:
         names = " or ".join(record.__name__ for record in node.records)
-        yield Finding(where, f"found {textwrap.shorten(repr(value), 60)} where {names} is expected", f"Give a {names}")
+        yield Finding(where, f"must be {names} (got {textwrap.shorten(repr(value), 60)})", f"Use {names}")
         return
     for name, inner, item in node.members(value):
         yield from () if item is None else _unlisted(inner, item, join(where, name))

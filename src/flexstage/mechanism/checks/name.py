@@ -67,7 +67,7 @@ def _range_fault(where: str, key: str) -> Finding | None:
     if match is None:
         return None
     if max(len(match[2]), len(match[3])) > 9:
-        return Finding(where, "its numbers have too many digits", "Write for example B1-B3")
+        return Finding(where, "its numbers have too many digits", "Use e.g. B1-B3")
     first, last = int(match[2]), int(match[3])
     if first > last:
         return Finding(where, f"the first number, {first}, is above the last, {last}", "Use ascending order")
@@ -115,7 +115,7 @@ def _owners(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
     if PLATFORM not in mechanism.bodies:
-        yield Finding("bodies", f'there is no body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
+        yield Finding("bodies", f'unknown body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
     if GROUND in mechanism.bodies:
         yield Finding(f"bodies.{GROUND}", f'"{GROUND}" is implied and cannot be a body of the stage', "Rename the body")
     for unit, drawn in mechanism.units.items():
@@ -126,7 +126,7 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:
     if name is not None and name not in names:
-        yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, names))
+        yield Finding(where, f'unknown {kind} "{name}"', suggest_nearest(name, names))
 
 
 def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:

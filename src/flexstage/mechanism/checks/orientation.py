@@ -51,9 +51,9 @@ def _links(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
     if ported:
-        return f'part "{part}" has ports, and the link does not say which way its z axis points', 'Write for example bends = "z"'
+        return f'part "{part}" has ports, and the link does not say which way its z axis points', 'Use e.g. bends = "z"'
     what = f'bends missing, as part "{part}" is not axisymmetric'
-    return what, 'Write for example bends = "y": the axis of its compliant rotation'
+    return what, 'Use e.g. bends = "y": the axis of its compliant rotation'
 
 
 def is_axisymmetric(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:

@@ -21,7 +21,7 @@ def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Return errors of overrides: each must address a link's value, have its kind, and be unique.
 
     >>> print(*override_findings(Mechanism("", overrides={"parts.neck.thickness": 0.001})))
-    overrides."parts.neck.thickness": there is no "neck". There are none.
+    overrides."parts.neck.thickness": unknown name "neck". None is defined.
     """
     made: dict[str, str] = {}
     inside: dict[str, str] = {}
@@ -57,7 +57,7 @@ def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Return errors of tags: each must have the address of a value, and begin with stated, derived or assumed.
 
     >>> print(*tag_findings(Mechanism("", tags={"gravity": "published"})))
-    tags."gravity": found "published", which does not begin with stated, derived or assumed. Write for example "stated paper 2.2".
+    tags."gravity": found "published", which does not begin with stated, derived or assumed. Use e.g. "stated paper 2.2".
     """
     without = replace(mechanism, overrides=Table({}))
     for address, tag in mechanism.tags.items():
@@ -69,7 +69,7 @@ def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:
         words = tag.split()
         if words[:1] not in [[word] for word in _WORDS]:
             what = f'found "{tag}", which does not begin with stated, derived or assumed'
-            yield Finding(where, what, 'Write for example "stated paper 2.2"')
+            yield Finding(where, what, 'Use e.g. "stated paper 2.2"')
         elif words[0] == STATED and (len(words) < 2 or words[1] not in mechanism.sources):
             source = words[1] if len(words) > 1 else ""
             what = f'unknown source "{source}"' if source else "source missing"

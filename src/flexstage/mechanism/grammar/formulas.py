@@ -66,7 +66,7 @@ def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Nu
     except ExpressionError as error:
         raise refuse(where, error.what, error.advice) from None
     if found.dimension.powers not in {dimension_of(form).powers for form in (quantity.si, *quantity.also)}:
-        what = f'found "{text}", {found.noun()}, where {quantity.noun} is expected'
+        what = f'must be {quantity.noun} (got "{text}", {found.noun()})'
         raise refuse(where, what, "Check the units of its numbers")
     return found.value  # type: ignore[no-any-return]
 
@@ -130,7 +130,7 @@ def read_numbers(table: Mapping[str, Any]) -> Numbers:
 
 def _plain_number(raw: Any, where: str) -> NamedNumber | None:
     """Number of a text without names or operators, or a bare number; `None` for a formula."""
-    example = 'Write for example "26 mm", 0.3, or a formula such as "arm / 2"'
+    example = 'Use e.g. "26 mm", 0.3, or a formula such as "arm / 2"'
     if isinstance(raw, (int, float)) and not isinstance(raw, bool):
         return NamedNumber(parse(str(raw), RATIO, where=where), "1")
     if not isinstance(raw, str):
@@ -257,7 +257,7 @@ def spelling_findings(name: str) -> Iterator[Finding]:
 
 
 def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors for named numbers unused in formulas and requirements.
+    """Return errors for named numbers that no formula and no requirement uses.
 
     >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
     numbers.arm: no formula uses it. Use it in a formula, or remove it.

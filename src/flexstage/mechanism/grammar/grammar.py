@@ -98,7 +98,7 @@ _TAGS_SCHEMA: dict[str, Any] = {
     "additionalProperties": {"type": "string", "pattern": r"^(stated|derived|assumed)( |$)", "examples": ["stated paper 2.2"]},
 }
 _KIND = "kind"
-_ELSEWHERE = "A kind that another package offers is known where that package is installed"
+_ELSEWHERE = "Install the package of the kind, if another package provides it"
 
 
 @dataclass(frozen=True)
@@ -263,13 +263,13 @@ class RecordNode(Node):
                 used.add(key)
                 values[name] = reader.read(inner, raw[key], join(where, key))
             elif slot.required:
-                advice = f"Write for example {slot.keys[0]} = {slot.node.example}"
+                advice = f"Use e.g. {slot.keys[0]} = {slot.node.example}"
                 values[name] = reader.refuse(where or "file", f"it has no {' or '.join(slot.keys)}", advice)
             else:
                 values[name] = slot.default
         known = [key for slot in self.fields.values() for key in slot.keys]
         for key in [key for key in raw if key not in used]:
-            reader.refuse(join(where, key), "this key is not known here", advise_key(key, set(known) - used, known))
+            reader.refuse(join(where, key), "unknown key", advise_key(key, set(known) - used, known))
         return BAD if BAD in values.values() else self.record(**values)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
@@ -371,7 +371,9 @@ class UnionNode(Node):
             return reader.refuse(where, f"{key} missing", f"Use {key} = one of {', '.join(options)}")
         if not isinstance(name, str) or name not in options:
             advice = advise_kind(kind(name), options)
-            return reader.refuse(join(where, key), f"found {kind(name)}", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice)
+            return reader.refuse(
+                join(where, key), f"unknown {key} (got {kind(name)})", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice
+            )
         return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
@@ -453,7 +455,7 @@ class Slot:
 def _is_table(raw: Any, where: str, reader: Reader) -> bool:
     fits = isinstance(raw, dict)
     if not fits:
-        reader.refuse(where, f"found {kind(raw)} where a table is expected", "Write a table: [name] or { key = value }")
+        reader.refuse(where, f"must be a table (got {kind(raw)})", "Write a table: [name] or { key = value }")
     return fits
 
 

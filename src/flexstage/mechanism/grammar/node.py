@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, ClassVar
 
-from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.units.expression import UnknownAmountError
 from flexstage.base.units.quantity import (
     COMPLIANCE,
@@ -29,7 +29,7 @@ from flexstage.base.units.quantity import (
     Bound,
     Quantity,
 )
-from flexstage.base.units.unit import parse, quantity_of_unit, show
+from flexstage.base.units.unit import example, missing_unit, parse, quantity_of_unit, show
 from flexstage.mechanism.grammar.formulas import Numbers, formula_value, is_formula
 from flexstage.spatial.frame import COMPONENTS
 
@@ -228,13 +228,12 @@ class NumberNode(Node):
         """Number in SI of a file value; raises `DesignError` at `where` if invalid."""
         if is_bare(raw) and raw == 0:
             return float(raw)
-        example = f'Write for example "{self.quantity.example}"'
         if isinstance(raw, str):
             return parse(raw, self.quantity, where=where)
         if not is_bare(raw):
-            raise refuse(where, f"found {kind(raw)} where {self.quantity.noun} is expected", example)
+            raise refuse(where, f"must be {self.quantity.noun} (got {kind(raw)})", f"Use e.g. {example(self.quantity)}")
         if self.quantity is not RATIO:
-            raise refuse(where, f"found {kind(raw)} without a unit", example)
+            raise missing_unit(raw, self.quantity, where=where)
         return _float(raw, where)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
@@ -378,7 +377,7 @@ class DirectionNode(VectorNode):
             return DIRECTIONS[raw]
         if not isinstance(raw, list) or len(raw) != 3:
             advice = f"Write one of {', '.join(DIRECTIONS)}, or three numbers without units"
-            return reader.refuse(where, f"found {kind(raw)} where a direction is expected", advice)
+            return reader.refuse(where, f"must be a direction (got {kind(raw)})", advice)
         return super().read(raw, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
@@ -446,9 +445,9 @@ class WholeNode(Node):
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """A whole number of 64 bits."""
         if not isinstance(raw, int) or isinstance(raw, bool) or abs(raw) >= 2**63:
-            return reader.refuse(where, f"found {kind(raw)} where a whole number is expected", "Write it without quotes")
+            return reader.refuse(where, f"must be a whole number (got {kind(raw)})", "Remove the quotes or the fraction")
         if self.bound is not None and not self.bound.low <= raw <= self.bound.high:
-            return reader.refuse(where, f"found {kind(raw)}", f"Give a whole number of {self.bound.whole()}")
+            return reader.refuse(where, f"must be {self.bound.whole()} (got {kind(raw)})", f"Use e.g. {self.bound.low:g}")
         return raw
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
@@ -468,7 +467,7 @@ class FlagNode(Node):
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """True or false."""
-        return raw if isinstance(raw, bool) else reader.refuse(where, f"found {kind(raw)}", "Write true or false, without quotes")
+        return raw if isinstance(raw, bool) else reader.refuse(where, f"must be a boolean (got {kind(raw)})", "Use true or false")
 
     def write(self, value: Any, where: str, writer: Writer) -> bool:
         """True or false."""
@@ -488,7 +487,7 @@ class TextNode(Node):
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """The text."""
-        return raw if isinstance(raw, str) else reader.refuse(where, f"found {kind(raw)} where a text is expected", "Write it in quotes")
+        return raw if isinstance(raw, str) else reader.refuse(where, f"must be a text (got {kind(raw)})", "Put it in quotes")
 
     def write(self, value: Any, where: str, writer: Writer) -> str:
         """The text."""
@@ -522,7 +521,7 @@ class ChoiceNode(Node):
         """Choice of that name."""
         if isinstance(raw, str) and raw in self.words:
             return self.words[raw]
-        return reader.refuse(where, f"found {kind(raw)}", f"It is one of {', '.join(self.words)}")
+        return reader.refuse(where, f"unknown value (got {kind(raw)})", suggest_nearest(kind(raw).strip('"'), self.words))
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Name of the choice."""
@@ -543,7 +542,7 @@ class AmountNode(Node):
         """Raw text or number."""
         if isinstance(raw, str) or is_bare(raw):
             return raw
-        return reader.refuse(where, f"found {kind(raw)} where a number with its unit is expected", f"Write for example {self.shown}")
+        return reader.refuse(where, f"must be a number with its unit (got {kind(raw)})", f"Use e.g. {self.shown}")
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A text with a unit, or a number."""
@@ -560,9 +559,7 @@ class TextsNode(Node):
         """The texts as a tuple."""
         texts = [raw] if isinstance(raw, str) else raw
         if not isinstance(texts, list) or not texts:
-            return reader.refuse(
-                where, f"found {kind(raw)} where a text is expected, or several", "Write it in quotes, several in brackets"
-            )
+            return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Write it in quotes, several in brackets")
         return every([reader.read(TextNode(), text, where) for text in texts])
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -611,7 +608,7 @@ def is_row(node: Node, raw: Any, length: int | None, where: str, reader: Reader)
     fits = isinstance(raw, list) and (length is None or len(raw) == length)
     if not fits:
         count = f"{length} values" if length is not None else "several values"
-        reader.refuse(where, f"found {kind(raw)} where {count} are expected", f"Write them in brackets: {node.example}")
+        reader.refuse(where, f"must be {count} (got {kind(raw)})", f"Write them in brackets: {node.example}")
     return fits
 
 
@@ -651,7 +648,7 @@ def _float(raw: float, where: str) -> float:
     except OverflowError:
         value = math.inf
     if not math.isfinite(value):
-        raise refuse(where, f"found {kind(raw)}, which is not finite", "Give a finite number")
+        raise refuse(where, f"must be finite (got {kind(raw)})", "Give a finite number")
     return value
 
 

@@ -9,7 +9,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-from flexstage.base.finding import suggest_nearest
+from flexstage.base.finding import list_choices, suggest_nearest
 from flexstage.base.renamed import new_name
 
 
@@ -23,25 +23,23 @@ def advise_kind(word: str, known: Collection[str]) -> str:
     """Return a hint for an unknown kind or shape: by synonym, else the nearest names.
 
     >>> advise_kind("Leaf-Spring", ["leaf", "notch"]), advise_kind("leef", ["leaf", "notch"])
-    ('It is called leaf here', 'The nearest name is leaf')
+    ('Use leaf', 'Use leaf')
     """
     plain = re.sub(r"[\s_-]", "", word.strip('"').lower())
     meant = [kind for kind, words in _words()["kinds"].items() if kind in known and plain in words]
     if not meant:
         return suggest_nearest(word.strip('"'), known)
     remarks = _words()["remarks"]
-    told = " or ".join(f"{kind} ({remarks[kind]})" if kind in remarks else kind for kind in meant)
-    return f"It is called {told} here"
+    return f"Use {' or '.join(f'{kind} ({remarks[kind]})' if kind in remarks else kind for kind in meant)}"
 
 
 def advise_key(key: str, unused: Collection[str], known: Collection[str]) -> str:
     """Return a hint for an unknown key: by symbol, else the nearest names, unused ones first.
 
     >>> advise_key("E", {"young", "density"}, {"young", "density"}), advise_key("thicknes", {"section"}, {"section", "thickness"})
-    ('It is called young here', 'The nearest name is thickness')
+    ('Use young', 'Use thickness')
     """
     meant = [name for name in known if key in _words()["keys"].get(name, ()) or name == new_name(key, known)]
     if meant:
-        return f"It is called {' or '.join(meant)} here"
-    advice = [suggest_nearest(key, names) for names in (unused, known) if names]
-    return next((each for each in advice if not each.startswith("There ")), advice[0] if advice else "There are none")
+        return f"Use {list_choices(meant)}"
+    return suggest_nearest(key, unused, otherwise=suggest_nearest(key, known))

@@ -49,7 +49,7 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
         reader.note(told)
         mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
     except EnoughError:
-        reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
+        reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     if reader.findings and STAGES not in raw:
         reader.findings += _unknown_names({name: table for name, table in raw.items() if isinstance(table, dict)})
     require(included.located(list(dict.fromkeys(reader.findings))))
@@ -63,7 +63,7 @@ def _unknown_names(raw: dict[str, dict[str, Any]]) -> Iterator[Finding]:
     for name, link in raw.get("links", {}).items():
         for body in link.get("joins", ()) if isinstance(link, dict) else ():
             if isinstance(body, str) and "/" not in body and isinstance(link["joins"], list) and body not in bodies:
-                yield Finding(f"links.{name}.joins", f'there is no body "{body}"', suggest_nearest(body, bodies))
+                yield Finding(f"links.{name}.joins", f'unknown body "{body}"', suggest_nearest(body, bodies))
 
 
 def read_design(text: str, where: str) -> Mechanism:
@@ -88,7 +88,7 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
         for address, number, node in () if value is BAD else node_of(record).numbers(value):
             reader.note(number_findings(address, number, node))
     except EnoughError:
-        reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
+        reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     require(reader.findings)
     return value
 
@@ -96,11 +96,11 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
 def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
     found = raw.get("format")
     if found is None:
-        reader.refuse("format", "the file does not say its format", f'The first line of a {_kind_of(form)} is format = "{form}"')
+        reader.refuse("format", "missing", f'Begin the file with format = "{form}"')
     elif found != form:
         other = isinstance(found, str) and re.fullmatch(r"flexstage( [a-z]+)? \d+", found) and _kind_of(found) != _kind_of(form)
-        told = f", a {_kind_of(found)}, where a {_kind_of(form)} is expected" if other else ""
-        reader.refuse("format", f"found {kind(found)}{told}", f'The first line of a {_kind_of(form)} is format = "{form}"')
+        told = f", a {_kind_of(found)}, expected a {_kind_of(form)}" if other else ""
+        reader.refuse("format", f"unknown format (got {kind(found)}{told})", f'Begin a {_kind_of(form)} with format = "{form}"')
         require(reader.findings)  # further errors of another kind of file are irrelevant
 
 
@@ -119,7 +119,7 @@ class _Files:
     def carried(self, reader: Reader, raw: Any) -> dict[str, tuple[Mount, Mechanism]]:
         """Mounted stages of a table, with their descriptions."""
         if not isinstance(raw, dict):
-            reader.refuse(STAGES, f"found {kind(raw)} where a table is expected", 'Write for example fine = { file = "fine.toml" }')
+            reader.refuse(STAGES, f"must be a table (got {kind(raw)})", 'Use e.g. fine = { file = "fine.toml" }')
             return {}
         mounts = {name: reader.read(node_of(Mount), item, f"{STAGES}.{name}") for name, item in raw.items() if name != TAGS}
         found = {name: (item, self.read(reader, name, item)) for name, item in mounts.items() if isinstance(item, Mount)}
@@ -198,16 +198,16 @@ def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def catalogue_of(name: Any, where: str) -> Catalogue:
-    """Return the shipped catalogue extended by the user's file of that name, from the folder of the design file."""
+    """The shipped catalogue extended by the user's file of that name, from the folder of the design file."""
     if name is None:
         return shipped_catalogue()
     if not isinstance(name, str):
-        raise refuse(CATALOGUE, f"found {kind(name)} where a file is expected", 'Write catalogue = "lab.toml"')
+        raise refuse(CATALOGUE, f"must be a file (got {kind(name)})", 'Use catalogue = "lab.toml"')
     tree = parse_toml(read_text(Path(where).parent / name), name)
     known = {section.name: dict for section in SECTIONS} | {"sources": str}
     for key, value in tree.items():
         if key not in known or not isinstance(value, dict) or not all(isinstance(each, known[key]) for each in value.values()):
-            raise refuse(f"{CATALOGUE}: {name}: {key}", "not a section of entries by name", suggest_nearest(key, known))
+            raise refuse(f"{CATALOGUE}: {name}: {key}", "unknown section", suggest_nearest(key, known))
     return shipped_catalogue().extended(tree)
 
 

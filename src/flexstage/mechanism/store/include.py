@@ -52,12 +52,12 @@ def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ())
     `above` are the files being read. A repeated entry in another file is an error.
 
     >>> with_included({"name": "a", "include": "stock.toml"}, "stage.toml")[1][0].what
-    'found "stock.toml" where a list of files is expected'
+    'must be a list of files (got "stock.toml")'
     """
     names = raw.get(INCLUDE, [])
     tree = {key: dict(value) if key in SECTIONS and isinstance(value, dict) else value for key, value in raw.items() if key != INCLUDE}
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        return Included(tree), [Finding(INCLUDE, f"found {kind(names)} where a list of files is expected", _LIST)]
+        return Included(tree), [Finding(INCLUDE, f"must be a list of files (got {kind(names)})", _LIST)]
     origin: dict[str, tuple[str, str]] = {}
     findings: list[Finding] = []
     for name in names:
@@ -112,7 +112,7 @@ def _strange(raw: dict[str, Any]) -> Iterator[Finding]:
             place = f"{key}.{next(iter(value))}" if isinstance(value, dict) and value else key
             yield Finding(place, f"not allowed in an included file (expected {', '.join(SECTIONS)})", "Move it to the design file")
         elif key in SECTIONS and not isinstance(value, dict):
-            yield Finding(key, f"found {kind(value)} where a table is expected", "Write a table: [name]")
+            yield Finding(key, f"must be a table (got {kind(value)})", "Write a table: [name]")
 
 
 def _with_whole_paths(value: Any, folder: Path) -> Any:

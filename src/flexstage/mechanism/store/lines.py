@@ -11,7 +11,7 @@ from flexstage.base.finding import Finding
 _HEAD = re.compile(r"\s*\[\[?(?P<name>[^\]]+)\]\]?\s*(#.*)?$")
 _KEY = re.compile(r"\s*(?P<name>(?:[\w-]+|\"[^\"]*\"|'[^']*')(?:\s*\.\s*(?:[\w-]+|\"[^\"]*\"|'[^']*'))*)\s*=")
 _STEP = re.compile(r"[\w-]+|\"[^\"]*\"|'[^']*'")
-_PLACE = re.compile(r"(?P<file>.*?): (?:at )?line (?P<line>\d+)(?:, column (?P<column>\d+))?(?:: (?P<address>.*))?", re.DOTALL)
+_PLACE = re.compile(r"(?P<file>.*?):(?P<line>\d+)(?::(?P<column>\d+))?(?:: (?P<address>.*))?", re.DOTALL)
 _OWNER = re.compile(r"(?P<owner>[^/.\s]+)/(?P<name>[^/.\s]+)(?:\.(?P<rest>.*))?")
 
 
@@ -20,12 +20,12 @@ def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[F
 
     >>> found = with_lines([Finding("placements.B1.unit", "it is lost", "Find it")], "[placements]\nB1 = { unit = 1 }", "stage.toml")
     >>> print(next(found))
-    stage.toml: line 2: placements.B1.unit: it is lost. Find it.
+    stage.toml:2: placements.B1.unit: it is lost. Find it.
     """
     lines = line_numbers(text)
     for finding in findings:
         line = line_of(finding.where, lines)
-        yield replace(finding, where=f"{where}: {finding.where}" if line is None else f"{where}: line {line}: {finding.where}")
+        yield replace(finding, where=f"{where}: {finding.where}" if line is None else f"{where}:{line}: {finding.where}")
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Spot:
 def spot_of(finding: Finding, where: str) -> Spot:
     """Return the position of an error in the file `where`; for another file, its full text as address.
 
-    >>> spot_of(Finding("stage.toml: line 2: placements.B1.unit", "it is lost", "Find it"), "stage.toml")
+    >>> spot_of(Finding("stage.toml:2: placements.B1.unit", "it is lost", "Find it"), "stage.toml")
     Spot(address='placements.B1.unit', line=2, column=None)
     """
     found = _PLACE.fullmatch(finding.where)

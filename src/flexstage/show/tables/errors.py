@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.analysis.assessment.error_budget import STEPS, ErrorBudget
+from flexstage.analysis.assessment.error_budget import NOISES, STEPS, ErrorBudget
 from flexstage.analysis.linear_statics.drift import Drift
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
@@ -29,18 +29,18 @@ def drift_table(drift: Drift) -> Table:
     'uniform [K]'
     """
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
-    notes = [f"Strokes held. {ground_text(drift.ground)}; its point ({at}) mm stays."]
+    notes = [f"Actuators fixed. {ground_text(drift.ground)}; its point ({at}) mm is fixed."]
     return matrix_table("Thermal drift", drift.motion, units=_NANO, notes=notes, provenance=drift.provenance)
 
 
 def ground_text(ground: Ground) -> str:
-    """What the ground was taken to be of, and why.
+    """Material of the ground, and its source.
 
     >>> ground_text(Ground("steel", "as stated")), ground_text(Ground("steel", "all links that stand on it are of it"))
     ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
     """
     if ground.material is None:
-        return "Ground does not grow"
+        return "Ground without expansion"
     return f"Ground made of {ground.material}" if ground.stated else f"Ground taken as {ground.material}: {ground.source}"
 
 
@@ -53,10 +53,10 @@ def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:
     ['z [nm]', '336.76']
     """
     sums = first_design(budget.sums.values, 2)
-    titles = ("Error budget, ideal mapping commanded", "Error budget, lost motion corrected by command")
+    titles = {"Error budget, ideal mapping commanded": budget.ideal, "Error budget, lost motion corrected by command": budget.corrected}
+    shown = {"Error budget in open loop, forces by the elastic model": budget.ideal} if budget.forced else titles
     return tuple(
-        _budget_table(title, matrix, sums[:, 2 * index : 2 * index + 2], budget)
-        for index, (title, matrix) in enumerate(zip(titles, (budget.ideal, budget.corrected), strict=True))
+        _budget_table(title, matrix, sums[:, 2 * index : 2 * index + 2], budget) for index, (title, matrix) in enumerate(shown.items())
     )
 
 
@@ -66,19 +66,24 @@ def _budget_table(title: str, matrix: Matrix, sums: Array, budget: ErrorBudget) 
     warm = number(single(budget.temperature))
     warmed = "" if "drift" in budget.reasons else f", and {warm} K of uniform temperature change"
     notes = [f"Largest errors over {command_text(budget.command)}, all at once{warmed}."]
-    if not np.all(np.isnan(values[:, matrix.columns.index("gauge noise")])):
+    known = {name: not np.all(np.isnan(values[:, place])) for place, name in enumerate(matrix.columns)}
+    if known["gauge noise"]:
         notes += [f"Gauge noise: {budget.coverage:g} standard deviations. Quantisation: half a step of every gauge, signs at their worst."]
+    if any(known.get(name) for name in NOISES):
+        notes += [f"Actuator noise and floor vibration: {budget.coverage:g} standard deviations, relative to the ground."]
     notes += ["Actuator steps: half a step of every stepping drive, signs at their worst."] if STEPS in matrix.columns else []
     notes += [] if budget.ground is None else [f"{ground_text(budget.ground)}."]
     missing = [name for name in budget.missing if name not in budget.reasons]
     notes += [f"Not stated, so not counted: {', '.join(missing)}."] if missing else []
-    notes += [f"Not known, so not counted: {name}, for {reason}." for name, reason in budget.reasons.items()]
+    for reason in dict.fromkeys(budget.reasons.values()):
+        unknown = ", ".join(name for name, each in budget.reasons.items() if each == reason)
+        notes += [f"Not known, so not counted: {unknown}, for {reason}."]
     found = Matrix(values, COMPONENTS, columns, ratio_units(TWIST_UNITS, ("1",) * len(columns)))
     return matrix_table(title, found, units=_NANO, notes=notes, provenance=budget.provenance)
 
 
 def gauge_drift_table(drift: Drift) -> Table | None:
-    """What the gauges read per kelvin; `None` without gauges.
+    """Gauge readings per kelvin; `None` without gauges.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
