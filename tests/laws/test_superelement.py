@@ -490,4 +490,4 @@ def test_links_name_a_body_for_every_port(tmp_path):
         told = check(replace(made, links={"frame": replace(link, joins=joins)}))
         assert any("expected left, right, top" in each.what for each in told)
     (told,) = check(replace(made, links={"frame": replace(link, bends=None)}))
-    assert "which way its z axis points" in told.what
+    assert 'as part "body" has ports' in told.what

@@ -176,11 +176,11 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
 
 
 def _rigid_bodies(mechanism: Mechanism) -> Iterator[Default]:
-    """Bodies that are rigid as their flexibility has no estimate, by reason."""
+    """Rigid bodies without an estimate of flexibility, by reason."""
     reasons = body_flexibilities(mechanism).reasons
     for reason in dict.fromkeys(reasons.values()):
         names = name_first([name for name, each in reasons.items() if each == reason])
-        yield Default(names, f"it is taken as rigid, its flexibility is not estimated: {reason}", "Compare with flexstage verify", _STILL)
+        yield Default(names, f"rigid by default, flexibility unknown: {reason}", "Compare with flexstage verify", _STILL)
 
 
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:

@@ -26,7 +26,7 @@ from flexstage.parts.part import Part, Restricted
 from flexstage.parts.profile import single
 from flexstage.spatial.frame import COMPONENTS, MOTION
 
-FROM_ZERO = "of all strokes from no voltage"
+FROM_ZERO = "of all strokes from zero voltage"
 
 
 class HingeStress(Result):
@@ -115,8 +115,8 @@ def hinge_stress(
     """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
     `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (the bias also bends its hinges), or
-    `stroke_limits(mechanism)` for a stage that is stress-free at its bias; those of coordinates with a `command`, whose inputs reach them.
-    `condition` states these limits. Linear beam theory, section maxima added (see `beams.stress`).
+    `stroke_limits(mechanism)` for a stage that is stress-free at its bias; for coordinates with a `command`, the limits of the coordinates.
+    `condition` describes these limits. Linear beam theory, section maxima added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -104,7 +104,7 @@ _VALUES: Mapping[str, Callable[[Any, Any], Any]] = {"+": operator.add, "-": oper
 def _pair(sign: str, first: Expression, second: Expression, text: str, scope: Scope) -> Amount:
     left, right = first.amount(scope), second.amount(scope)
     if sign == "/" and np.any(np.equal(right.value, 0.0)):
-        raise ExpressionError(f'"{text}" divides by nothing: what stands below is 0', "Check the number that is 0")
+        raise ExpressionError(f'"{text}" divides by 0', "Check the number that is 0")
     value = _VALUES[sign](left.value, right.value)
     if sign in "*/":
         return Amount(value, left.dimension.times(right.dimension, Fraction(1 if sign == "*" else -1)))
@@ -253,7 +253,7 @@ class _Parser:
         after = f'after "{before}"' if before else "at its beginning"
         if name and before:
             advice = f"A named number is multiplied with *: {before[-20:]}*{name[0]}"
-            return ExpressionError(f'"{name[0]}" {after} is no known unit, and no sign stands between', advice)
+            return ExpressionError(f'"{name[0]}" {after} is an unknown unit, without an operator', advice)
         if rest[0] == "^":
             return ExpressionError(f'found "^" {after}', "Powers are written as products, arm*arm, and roots as sqrt(arm)")
         if rest[0] == ",":

@@ -179,7 +179,7 @@ def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
 
 
 def example(quantity: Quantity) -> str:
-    """An example of a quantity as it is typed: a ratio without quotes.
+    """Return an example of a quantity for input: a ratio without quotes.
 
     >>> example(RATIO)
     '0.3'

@@ -51,7 +51,7 @@ def _links(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
     if ported:
-        return f'part "{part}" has ports, and the link does not say which way its z axis points', 'Use e.g. bends = "z"'
+        return f'bends (z axis of the link) missing, as part "{part}" has ports', 'Use e.g. bends = "z"'
     what = f'bends missing, as part "{part}" is not axisymmetric'
     return what, 'Use e.g. bends = "y": the axis of its compliant rotation'
 

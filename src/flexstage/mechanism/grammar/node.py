@@ -559,7 +559,7 @@ class TextsNode(Node):
         """The texts as a tuple."""
         texts = [raw] if isinstance(raw, str) else raw
         if not isinstance(texts, list) or not texts:
-            return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Write it in quotes, several in brackets")
+            return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Put it in quotes, several in brackets")
         return every([reader.read(TextNode(), text, where) for text in texts])
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -648,7 +648,7 @@ def _float(raw: float, where: str) -> float:
     except OverflowError:
         value = math.inf
     if not math.isfinite(value):
-        raise refuse(where, f"must be finite (got {kind(raw)})", "Give a finite number")
+        raise refuse(where, f"must be finite (got {kind(raw)})", "Use a finite number")
     return value
 
 
