@@ -118,7 +118,7 @@ def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 def _worst(group: Sequence[Finding]) -> Finding:
     """Finding with the value farthest beyond the bound; for equal texts the first, with the other names."""
-    values = [float(found[1]) * (1.0 if found[2] == "less" else -1.0) for each in group if (found := _VALUE.search(each.what))]
+    values = [float(result[1]) * (1.0 if result[2] == "less" else -1.0) for each in group if (result := _VALUE.search(each.what))]
     if len(group) == 1 or not values:
         return replace(group[0], where=name_first(list(dict.fromkeys(each.where for each in group)), most=3))
     worst = group[values.index(max(values))]

@@ -164,11 +164,11 @@ def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) ->
     if isinstance(value, tuple):
         return (_component(value, address, node, step),)
     step = node.field_called(value, step)
-    found = [path for path in completions(value, step) if path[0] not in _DOCUMENT and (last or path[:-1] != (NUMBERS,))]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        raise refuse(address, f'ambiguous name "{step}" (got {" or ".join(".".join(path) for path in found)})', "Use the full address")
+    results = [path for path in completions(value, step) if path[0] not in _DOCUMENT and (last or path[:-1] != (NUMBERS,))]
+    if len(results) == 1:
+        return results[0]
+    if results:
+        raise refuse(address, f'ambiguous name "{step}" (got {" or ".join(".".join(path) for path in results)})', "Use the full address")
     if value is None:
         raise refuse(address, f'unknown name "{step}": its parent is not specified', "Specify the parent first")
     raise refuse(address, f'unknown name "{step}"', suggest_nearest(step, _names(value)))

@@ -103,8 +103,8 @@ def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> 
     angle = np.arccos(np.clip(np.sum(one * two, -1) / lengths, -1.0, 1.0))
     skew = np.abs(angle - 0.5 * np.pi) > _TOLERANCE
     if np.any(skew):
-        at, (found,) = first_failing(skew, angle)
-        what = f"wrong angle to {where.rpartition('.')[2]} (got {np.rad2deg(found):.4g} deg, expected 90 deg)"
+        at, (result,) = first_failing(skew, angle)
+        what = f"wrong angle to {where.rpartition('.')[2]} (got {np.rad2deg(result):.4g} deg, expected 90 deg)"
         yield Finding(f"{other_where}{at}", what, "Use two perpendicular directions")
 
 

@@ -249,12 +249,12 @@ class NumberNode(Node):
         """JSON string with a unit as in the example."""
         said = f", {self.bound.text()}" if self.bound and self.bound.text() else ""
         text = {"type": "string", "pattern": _WITH_UNIT}
-        told = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
+        description = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
         texts = [text, {"type": "string", "pattern": _FORMULA}] if definitions.formulas else [text]
         texts = [{"enum": [0, "0"]}, *texts]
         if self.quantity is not RATIO:
-            return {"anyOf": texts} | told
-        return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | told | {"examples": [float(self.quantity.example)]}
+            return {"anyOf": texts} | description
+        return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | description | {"examples": [float(self.quantity.example)]}
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
         """The number."""
