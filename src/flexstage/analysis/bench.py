@@ -102,9 +102,7 @@ class Bench:
             lost = int(np.sum(~states.converged))
             if lost:
                 raise refuse(f"paths.{name}", f"no equilibrium found at {lost} of {states.converged.size} points", "Reduce the stroke")
-            other = Bench(self.mechanism, self.command)
-            other.__dict__["model"] = linearise.linearise(states, locked=result.locked)
-            self._along[name] = other
+            self._along[name] = self.with_model(linearise.linearise(states, locked=result.locked))
         return self._along[name]
 
     def force_workspace(self, point: str) -> ForceWorkspace:
@@ -168,8 +166,14 @@ class Bench:
         """Bench of stiffness, modes, lost motion and drift under a significant permanent load; else this bench."""
         if self.loaded is None or self.loaded.model is None:
             return self
+        other = self.with_model(self.loaded.model)
+        other.__dict__ |= {"links": self.loaded.links, "kinematics": self.kinematics}
+        return other
+
+    def with_model(self, model: LinearModel) -> Bench:
+        """Return a bench of the same stage with another linear model."""
         other = Bench(self.mechanism, self.command)
-        other.__dict__ |= {"model": self.loaded.model, "links": self.loaded.links, "kinematics": self.kinematics}
+        other.__dict__["model"] = model
         return other
 
     @cached_property
