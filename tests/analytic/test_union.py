@@ -335,7 +335,7 @@ def test_what_cannot_be_weighed_is_refused(solids: tuple[Solid, ...]) -> None:
 def test_a_batch_is_refused_for_the_one_design_that_overlaps() -> None:
     """Beside the block in the first design, aslant through its corner in the second."""
     rod = Cylinder("steel", 0.002, 0.03, (np.array([0.03, 0.009]), 0.009, 0.0), along=(0.2, 0.0, 1.0))
-    with pytest.raises(DesignError, match="overlaps s1"):
+    with pytest.raises(DesignError, match="overlap with s1"):
         weighed(UNIT, rod)
     beside = replace(rod, at=(0.0135, 0.0135, 0.005))  # their boxes meet, they do not
     assert np.isclose(weighed(UNIT, beside).mass, DENSITY * (1e-6 + np.pi * 1e-6 * 0.03))

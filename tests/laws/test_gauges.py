@@ -209,7 +209,7 @@ def test_readings_keep_their_units_in_responses_tests_and_loops(stage):
 @pytest.mark.parametrize(
     ("gauges", "found"),
     [
-        ({"G": Probe("gap", PLATFORM, Pose())}, "gauges.G: it has no positive"),
+        ({"G": Probe("gap", PLATFORM, Pose())}, "gauges.G: positive missing"),
         (
             {"T": Probe("tilt", PLATFORM, Pose(), SensorSense.OPENS)},
             "gauges.T.positive: tilt has no gap that opens; it reads along or about its x axis",
@@ -219,7 +219,7 @@ def test_readings_keep_their_units_in_responses_tests_and_loops(stage):
         ({"G1-G2": LinkProbe("strain", "B1-B3/pzt")}, "gauges.G1-G2.link: wrong number of links (got 3 links for 2 gauges)"),
         ({"G": LinkProbe("nothing", "B1/pzt")}, 'gauges.G.gauge: unknown sensor "nothing"'),
         ({"D": GaugeSum({"S1": 1.0})}, 'gauges.D.sum.S1: unknown gauge "S1"'),
-        ({"D": GaugeSum({})}, "gauges.D.sum: it has no members"),
+        ({"D": GaugeSum({})}, "gauges.D.sum: members missing"),
         ({"D": GaugeSum({"E": 1.0}), "E": GaugeSum({"D": 1.0})}, "gauges.D.sum: circular sum"),
         (
             {"T": Probe("tilt", PLATFORM, Pose()), "G": LinkProbe("strain", "B1/pzt"), "D": GaugeSum({"T": 1.0, "G": 1.0})},

@@ -175,7 +175,7 @@ def test_a_value_of_another_file_is_changed_there(tmp_path):
         ('"coarse/platform"', '"coarse/platfrm"', 'stages.fine.on: unknown body "coarse/platfrm". Use coarse/platform'),
         ("fine/left", "fine/lft", 'overrides."fine/lft.thickness"'),
         ("pose = {", 'pose = { mirror = "x",', "stages.fine.pose.mirror: a whole stage cannot be mirrored"),
-        ('on = "coarse/platform", ', "", "not one of the stages is on top of all others, but fine, coarse"),
+        ('on = "coarse/platform", ', "", "no unique topmost stage (got fine, coarse)"),
     ],
 )
 def test_what_cannot_be_put_together_is_told(tmp_path, old, new, said):

@@ -244,7 +244,7 @@ def test_it_is_rigid_to_the_ideal_model_or_free_as_its_link_states(folder):
     assert ideal(two).mobility == 0
     assert ideal(replace(two, links={"frame": hinge})).mobility == 1
     told = check(replace(three, links={"frame": replace(three.links["frame"], free=(Freedom.RZ,))}))
-    assert "3 ports" in str(told[0])
+    assert "two ports" in str(told[0])
 
 
 def test_a_hinge_by_its_matrices_loses_what_the_drawn_one_loses(tmp_path):
@@ -355,7 +355,7 @@ def skew(matrix):
 
 
 WRONG = {
-    "not square": (lambda body: broken(body, stiffness=body.stiffness[:-1]), "stiffness matrix: it is 25 x 26, not square"),
+    "not square": (lambda body: broken(body, stiffness=body.stiffness[:-1]), "stiffness matrix: not square (got 25 x 26)"),
     "of two sizes": (
         lambda body: broken(body, mass=body.mass[:-1, :-1]),
         "26 x 26, 25 x 25",
@@ -365,7 +365,7 @@ WRONG = {
     "negative mass": (lambda body: broken(body, mass=-body.mass), "negative"),
     "negative in one motion": (lambda body: broken(body, mass=body.mass - 3.0 * np.diag([0.0] * 18 + [1.0] * 8)), "negative"),
     "negative stiffness": (lambda body: broken(body, stiffness=-body.stiffness), "zero or negative stiffness"),
-    "held": (lambda body: broken(body, stiffness=body.stiffness + 1e4 * np.eye(26)), "it resists rigid motions"),
+    "held": (lambda body: broken(body, stiffness=body.stiffness + 1e4 * np.eye(26)), "stiffness of rigid motions"),
     "rows too far": (lambda body: broken(body, ports={**body.ports, "top": replace(body.ports["top"], row=22)}), "end at 27"),
     "rows twice": (lambda body: broken(body, ports={**body.ports, "top": replace(body.ports["top"], row=9)}), "overlap with another port"),
     "one port": (lambda body: broken(body, ports={"left": body.ports["left"]}), "too few ports (got 1, expected 2 or more)"),
@@ -399,7 +399,7 @@ def test_matrices_that_are_wrong_are_refused_with_what_is_found(tmp_path, fault)
 
 def test_units_that_are_not_the_files_are_told(tmp_path):
     part = replace(written(elastic(13), tmp_path, "millimetres"), units=FileUnits.SI)
-    with pytest.raises(DesignError, match='if units = "N-mm-t" is meant'):
+    with pytest.raises(DesignError, match='with units = "N-mm-t"'):
         superelement(part)
 
 
@@ -431,7 +431,7 @@ FILES = {
     "without mass": (lambda path: np.savez(path, K=np.eye(12)), 'has no array "M"; it has K'),
     "of objects": (lambda path: np.savez(path, K=np.array([{}, None], dtype=object), M=np.eye(12)), "it cannot be read as an NPZ file"),
     "of complex numbers": (lambda path: np.savez(path, K=1j * np.eye(12), M=np.eye(12)), "complex numbers"),
-    "of one row": (lambda path: np.savez(path, K=np.zeros(12), M=np.eye(12)), "it is 12, not square"),
+    "of one row": (lambda path: np.savez(path, K=np.zeros(12), M=np.eye(12)), "not square (got 12)"),
     "empty": (lambda path: np.savez(path, K=np.zeros((0, 0)), M=np.zeros((0, 0))), "beyond the 0 rows"),
 }
 
@@ -449,12 +449,12 @@ def test_files_that_are_wrong_are_refused(tmp_path, fault):
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("%%MatrixMarket matrix coordinate real symmetric\n12 12 1000000\n1 1 2.0\n", "it breaks off"),
-        ("%%MatrixMarket matrix coordinate complex general\n2 2 1\n1 1 2.0 1.0\n", "complex entries"),
+        ("%%MatrixMarket matrix coordinate real symmetric\n12 12 1000000\n1 1 2.0\n", "truncated file"),
+        ("%%MatrixMarket matrix coordinate complex general\n2 2 1\n1 1 2.0 1.0\n", "got complex"),
         ("%%MatrixMarket matrix array real general\n2 2\n1.0\nx\n3.0\n4.0\n", "cannot be read as a Matrix Market file"),
         ("no matrix", "cannot be read as a Matrix Market file"),
-        ("%%MatrixMarket matrix coordinate real general\n100000000 100000000 1\n1 1 1.0\n", "is 100000000 x 100000000 with 1 entries"),
-        ("%%MatrixMarket matrix coordinate real symmetric\n12 13 12\n1 1 2.0\n", "is 12 x 13 with 24 entries"),
+        ("%%MatrixMarket matrix coordinate real general\n100000000 100000000 1\n1 1 1.0\n", "got 100000000 x 100000000 with 1 entries"),
+        ("%%MatrixMarket matrix coordinate real symmetric\n12 13 12\n1 1 2.0\n", "got 12 x 13 with 24 entries"),
     ],
 )
 def test_matrix_market_files_that_are_wrong_are_refused(tmp_path, text, told):
@@ -480,7 +480,7 @@ def test_another_version_of_the_file_is_told(tmp_path):
     changed = replace(made, parts={"body": replace(made.parts["body"], loss_factor=0.02)})
     (told,) = check(changed)
     assert told.where == "parts.body.sha256"
-    assert "another content than stated" in told.what
+    assert "wrong digest" in told.what
 
 
 def test_links_name_a_body_for_every_port(tmp_path):
@@ -488,6 +488,6 @@ def test_links_name_a_body_for_every_port(tmp_path):
     link = made.links["frame"]
     for joins in (("ground", "platform"), {"left": "ground", "right": "platform"}, {**link.joins, "bottom": "ground"}):
         told = check(replace(made, links={"frame": replace(link, joins=joins)}))
-        assert any("has the ports left, right, top" in each.what for each in told)
+        assert any("expected left, right, top" in each.what for each in told)
     (told,) = check(replace(made, links={"frame": replace(link, bends=None)}))
-    assert "which way its z axis points" in told.what
+    assert 'as part "body" has ports' in told.what

@@ -456,7 +456,7 @@ NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "long"')
         ('"long"', '"long + 3 N"', ["parts.wire.length", '"long + 3 N"', "a length and a force"]),
         ('"long"', '"long*arm"', ["parts.wire.length", "a quantity in m^2", "must be a length"]),
         ('"long"', '"sin(arm)*long"', ["parts.wire.length", '"sin(arm)"', "an angle", "a length"]),
-        ('"long"', '"long/(arm - arm)"', ["parts.wire.length", "divides by nothing"]),
+        ('"long"', '"long/(arm - arm)"', ["parts.wire.length", "divides by 0"]),
         ('"long"', '"sqrt(-long*long)"', ["parts.wire.length", "root", "below 0"]),
         ('"long"', '"long*1e300*1e300"', ["parts.wire.length", "finite"]),
         ('"long"', '"long^2"', ["parts.wire.length", '"^"', "arm*arm"]),

@@ -71,8 +71,8 @@ class Bench:
     def along(self, name: str, at: float | None = None) -> strokes.Points:
         """Stroke characteristics along a path of the design, or at one value of its drive."""
         if (name, at) not in self._points:
-            found = course(self.mechanism, name)
-            self._points[name, at] = found.points(self.nonlinear, None if at is None else np.array([at]))
+            result = course(self.mechanism, name)
+            self._points[name, at] = result.points(self.nonlinear, None if at is None else np.array([at]))
         return self._points[name, at]
 
     @staticmethod
@@ -81,8 +81,8 @@ class Bench:
         new = [each for each in benches if (name, at) not in each._points]  # noqa: SLF001
         if not new:
             return
-        found = course(new[0].mechanism, name)
-        points = found.points_of_designs([each.nonlinear for each in new], None if at is None else np.array([at]))
+        result = course(new[0].mechanism, name)
+        points = result.points_of_designs([each.nonlinear for each in new], None if at is None else np.array([at]))
         for bench, each in zip(new, points, strict=True):
             bench._points[name, at] = each  # noqa: SLF001
 
@@ -97,12 +97,12 @@ class Bench:
     def over(self, name: str) -> Bench:
         """Bench of models linearised about all points of a path, as a batch."""
         if name not in self._along:
-            found = course(self.mechanism, name)
-            states = found.path(self.nonlinear, found.rest(self.nonlinear)).state
+            result = course(self.mechanism, name)
+            states = result.path(self.nonlinear, result.rest(self.nonlinear)).state
             lost = int(np.sum(~states.converged))
             if lost:
                 raise refuse(f"paths.{name}", f"no equilibrium found at {lost} of {states.converged.size} points", "Reduce the stroke")
-            self._along[name] = self.with_model(linearise.linearise(states, locked=found.locked))
+            self._along[name] = self.with_model(linearise.linearise(states, locked=result.locked))
         return self._along[name]
 
     def force_workspace(self, point: str) -> ForceWorkspace:

@@ -115,15 +115,15 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
 
 def _massless_defaults(mechanism: Mechanism) -> Iterator[Default]:
     """Mass of restricted parts, which are massless springs."""
-    told: dict[str, float] = {}
+    masses: dict[str, float] = {}
     for link in expand(mechanism).links.values():
         if isinstance(link.part, Restricted) and not isinstance(link.part.part, Joint):
             try:
                 own = np.real(mass(link.part.part, link.material))
             except DesignError:
                 continue  # a material without density
-            told[f"parts.{link.link.part}"] = float(np.max(own[..., 0, 0] + 2.0 * own[..., 0, 6] + own[..., 6, 6]))
-    for where, size in told.items():
+            masses[f"parts.{link.link.part}"] = float(np.max(own[..., 0, 0] + 2.0 * own[..., 0, 6] + own[..., 6, 6]))
+    for where, size in masses.items():
         if size > 0.0:
             advice = "Add it to the adjacent bodies"
             yield Default(where, f"mass of a restricted part omitted ({size:.4g} kg)", advice, _STILL | {"stiffness"})
@@ -140,7 +140,7 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
     """Materials, stacks and matrices without a specified loss factor under structural damping."""
     if not isinstance(mechanism.damping, StructuralDamping):
         return
-    told: dict[str, str] = {}
+    hints: dict[str, str] = {}
     for link in expand(mechanism).links.values():
         part = as_drawn(mechanism, link).part
         inner = part.part if isinstance(part, Restricted) else part
@@ -148,21 +148,21 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
         holder = mechanism.materials[material] if material else inner
         if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
             where = f"materials.{material}" if material else f"parts.{link.link.part}"
-            told[where] = (
+            hints[where] = (
                 "Specify the drawn part that it replaces" if isinstance(inner, ComplianceMatrix) else "Specify it: loss_factor = 0.002"
             )
     for item in expand(mechanism).superelements.values():
         if item.part.loss_factor is None:
-            told[f"parts.{item.link.part}"] = "Specify it: loss_factor = 0.002"
-    for where, advice in told.items():
+            hints[f"parts.{item.link.part}"] = "Specify it: loss_factor = 0.002"
+    for where, advice in hints.items():
         yield Default(where, "loss factor 0 by default (structural damping)", advice, _UNDAMPED)
 
 
 def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
     """Default ground material, if a requirement is on drift."""
     try:
-        asked = any(line.kind is drift for line in requirements(mechanism))
-        ground = ground_of(mechanism) if asked else None
+        requested = any(line.kind is drift for line in requirements(mechanism))
+        ground = ground_of(mechanism) if requested else None
     except DesignError:
         return  # the requirement reports the missing field
     if ground is not None and not ground.stated:
@@ -176,14 +176,14 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
 
 
 def _rigid_bodies(mechanism: Mechanism) -> Iterator[Default]:
-    """Bodies that are rigid as their flexibility has no estimate, by reason."""
+    """Rigid bodies without an estimate of flexibility, by reason."""
     reasons = body_flexibilities(mechanism).reasons
     if mechanism.elastic_bodies:
         what = "the lumped model includes the flexibility of bodies, estimated from their outlines"
         yield Default("elastic_bodies", what, "Compare with flexstage verify", frozenset({"mapping"}))
     for reason in dict.fromkeys(reasons.values()):
         names = name_first([name for name, each in reasons.items() if each == reason])
-        yield Default(names, f"it is taken as rigid, its flexibility is not estimated: {reason}", "Compare with flexstage verify", _STILL)
+        yield Default(names, f"rigid by default, flexibility unknown: {reason}", "Compare with flexstage verify", _STILL)
 
 
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
@@ -224,8 +224,8 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
 def _large_motions(mechanism: Mechanism) -> Iterator[Finding]:
     """Single-axis strokes beyond small displacements; none if the strokes do not determine the platform."""
     with suppress(DesignError):
-        found = kinematics(mechanism)
-        yield from small_motion(mechanism, found).warnings(single_strokes(mechanism, found))
+        result = kinematics(mechanism)
+        yield from small_motion(mechanism, result).warnings(single_strokes(mechanism, result))
 
 
 def _catalogue_items(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
@@ -350,9 +350,9 @@ def _tension_findings(mechanism: Mechanism) -> Iterator[Finding]:
 def _blockages(mechanism: Mechanism) -> Iterator[Finding]:
     """Blocked strokes or a blocked platform; none if the ideal model is refused."""
     with suppress(DesignError):
-        found = kinematics(mechanism)
-        yield from found.blockages
-        if not found.mobility and not found.actuators:
+        result = kinematics(mechanism)
+        yield from result.blockages
+        if not result.mobility and not result.actuators:
             what = "its links constrain all six degrees of freedom: no ideal motion remains"
             yield Finding(PLATFORM, what, "Free the degrees of freedom of links for the required motion")
 
@@ -364,13 +364,13 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> model_findings(double_triangle())
     ()
     """
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for read in (requirements, kinematics, standing):
         try:
             read(mechanism)
         except DesignError as error:
-            found += error.findings
-    return tuple(dict.fromkeys([*found, *path_findings(mechanism)]))
+            findings += error.findings
+    return tuple(dict.fromkeys([*findings, *path_findings(mechanism)]))
 
 
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:

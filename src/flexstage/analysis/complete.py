@@ -217,8 +217,8 @@ def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None)
 
 
 def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Workspace | None, drifted: Drift | None) -> ErrorBudget:
-    asked = command if command is not None or reach is None else reach.command
-    return budget(mechanism, asked or {}, temperature=None, drifted=drifted)
+    requested = command if command is not None or reach is None else reach.command
+    return budget(mechanism, requested or {}, temperature=None, drifted=drifted)
 
 
 def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
@@ -229,8 +229,8 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
     0.00015
     """
     lines = (line for line in requirements(mechanism) if line.kind is stroke and line.sense is Sense.AT_LEAST)
-    found = {line.name: line.limit for line in lines if line.point == PLATFORM}
-    return found or None
+    result = {line.name: line.limit for line in lines if line.point == PLATFORM}
+    return result or None
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:

@@ -30,8 +30,8 @@ def validity(part: Part | Mechanism, where: str = "part", material: Material | N
     Returns the validity of the part (see `beams.validity`); for a stage by address: `parts.NAME`, or the link of an overridden part.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> found = validity(parallelogram())
-    >>> list(found), round(float(found["parts.leaf"].errors["x"]), 3)
+    >>> result = validity(parallelogram())
+    >>> list(result), round(float(result["parts.leaf"].errors["x"]), 3)
     (['parts.leaf', 'parts.neck', 'parts.stack'], 0.034)
     """
     if not isinstance(part, Mechanism):

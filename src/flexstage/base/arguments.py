@@ -239,16 +239,16 @@ def _optional(rule: Rule, value: Any) -> Any:
 
 
 def _first_fitting(rules: list[Rule], value: Any) -> Any:
-    found = list[MismatchError]()
+    results = list[MismatchError]()
     for rule in rules:
         try:
             return rule(value)
         except MismatchError as error:
-            found.append(error)
-    inside = next((each for each in found if each.value is not value), None)
+            results.append(error)
+    inside = next((each for each in results if each.value is not value), None)
     if inside is not None:
         raise inside
-    raise MismatchError(value, " or ".join(dict.fromkeys(each.expected for each in found)), found[0].advice)
+    raise MismatchError(value, " or ".join(dict.fromkeys(each.expected for each in results)), results[0].advice)
 
 
 def _choice(kind: type[Enum], words: Mapping[str, Enum], value: Any) -> Any:

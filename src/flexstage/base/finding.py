@@ -18,7 +18,7 @@ from flexstage.base.renamed import new_name
 
 _SUGGESTIONS = 6
 _VALUE = re.compile(r"got ([0-9][0-9.]*(?:e[+-]?[0-9]+)?)(?=.* or (less|more)\))(.*)", re.DOTALL)
-"""The value of a text that states a bound, and which side of the bound is allowed."""
+"""Value in a text with a bound, and the allowed side of the bound."""
 
 
 class Severity(Enum):
@@ -60,7 +60,7 @@ class DesignError(ValueError):
 
 
 class LowerBoundError(DesignError):
-    """A quantity of which only a lower bound, `bound`, is known."""
+    """Quantity known only by its lower `bound`."""
 
     def __init__(self, findings: Iterable[Finding], bound: float) -> None:
         super().__init__(findings)
@@ -104,7 +104,7 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Warnings that differ in their object and in the value of one bound, as one: the worst, and their number.
+    """Merge warnings with different objects and values of one bound into the worst one, with their number.
 
     >>> large = [Finding(f"B{each}", f"stress too large (got {each} MPa, expected 1 MPa or less)", "Reduce it") for each in (2, 4, 3)]
     >>> print(*combine_warnings(large))
@@ -117,8 +117,8 @@ def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def _worst(group: Sequence[Finding]) -> Finding:
-    """The finding with the value farthest beyond the bound; of equal texts the first, with the other names."""
-    values = [float(found[1]) * (1.0 if found[2] == "less" else -1.0) for each in group if (found := _VALUE.search(each.what))]
+    """Finding with the value farthest beyond the bound; for equal texts the first, with the other names."""
+    values = [float(result[1]) * (1.0 if result[2] == "less" else -1.0) for each in group if (result := _VALUE.search(each.what))]
     if len(group) == 1 or not values:
         return replace(group[0], where=name_first(list(dict.fromkeys(each.where for each in group)), most=3))
     worst = group[values.index(max(values))]
@@ -126,7 +126,7 @@ def _worst(group: Sequence[Finding]) -> Finding:
 
 
 def name_first(names: Sequence[str], most: int = 8) -> str:
-    """The first names, and the number of the others.
+    """Return the first names, and the number of the others.
 
     >>> name_first(["b2"]), name_first(["b2", "b3", "b4", "b5"], most=2)
     ('b2', 'b2, b3 and 2 more')
@@ -135,7 +135,7 @@ def name_first(names: Sequence[str], most: int = 8) -> str:
 
 
 def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> str:
-    """Hint for an unknown name: its new name, at most six similar names (the nearest first), else `otherwise`, else known names.
+    """Return a hint for an unknown name: its new name, at most six similar names (the nearest first), else `otherwise`, else known names.
 
     >>> suggest_nearest("plattform", ["ground", "platform"]), suggest_nearest("xyz", ["ground", "platform"])
     ('Use platform', 'Use ground or platform')
@@ -159,7 +159,7 @@ def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> 
 
 
 def list_choices(names: Sequence[str]) -> str:
-    """Names as alternatives.
+    """Return names as alternatives.
 
     >>> list_choices(["x", "y", "z"]), list_choices(["x"])
     ('x, y or z', 'x')

@@ -235,10 +235,10 @@ def result_fields(kind: type) -> Mapping[str, Field]:
 def walked_fields(kind: type) -> tuple[Field, ...]:
     """Return the document fields of a result class: fields, then annotated properties."""
     own = {each.name for each in fields(kind)}
-    found = {name: each for name, each in result_fields(kind).items() if name != "reasons"}
+    result = {name: each for name, each in result_fields(kind).items() if name != "reasons"}
     return tuple(
         each
-        for name, each in found.items()
+        for name, each in result.items()
         if (_is_walked(each.type, each.annotations) if name in own else each.annotations and INNER not in each.annotations)
     )
 
@@ -256,8 +256,8 @@ def field_of(kind: type, path: str) -> Field:
     if not rest:
         return field
     inner = field_of(next(part for part in (*get_args(field.type), field.type) if isinstance(part, type)), rest)
-    told = inner.annotation(Heading) or field.annotation(Heading) or Heading()
-    annotations = (replace(told, text=told.text or inner.words), *inner.annotations, *field.annotations)
+    heading = inner.annotation(Heading) or field.annotation(Heading) or Heading()
+    annotations = (replace(heading, text=heading.text or inner.words), *inner.annotations, *field.annotations)
     return replace(inner, name=path, annotations=annotations)
 
 
@@ -303,15 +303,15 @@ def _properties(kind: type) -> Iterator[tuple[str, Any, str]]:
 def walk(record: Any) -> dict[str, Any]:
     """Return the fields of a result, one level deep, and the `reasons` for absent values."""
     values, reasons = values_of(record)
-    named, found = {each.along for each in values}, dict[str, Any]()
+    named, result = {each.along for each in values}, dict[str, Any]()
     for each, value in values.items():
         if each.along is None:
-            found[each.key] = {name: {} for name in value or ()} if each.name in named else value
+            result[each.key] = {name: {} for name in value or ()} if each.name in named else value
         elif value is not None:
-            for under, item in zip(found[each.along].values(), by_name(value), strict=True):
+            for under, item in zip(result[each.along].values(), by_name(value), strict=True):
                 under[each.key] = item
     keys = {each.name: each.key for each in values}
-    return found | ({"reasons": {keys.get(name, name): reason for name, reason in reasons.items()}} if reasons else {})
+    return result | ({"reasons": {keys.get(name, name): reason for name, reason in reasons.items()}} if reasons else {})
 
 
 @dataclass(frozen=True)
@@ -334,13 +334,13 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
         return values, why
     if isinstance(record, Mapping):
         return {Field(str(key), object, ()): value for key, value in record.items() if key != "reasons"}, dict(record.get("reasons") or {})
-    reasons, found = dict(getattr(record, "reasons", {})), dict[Field, Any]()
+    reasons, result = dict(getattr(record, "reasons", {})), dict[Field, Any]()
     for each in walked_fields(type(record)):
         try:
-            found[each] = None if each.name in reasons else each.of(record)
+            result[each] = None if each.name in reasons else each.of(record)
         except DesignError as error:
-            found[each], reasons[each.name] = None, str(error)
-    return found, reasons
+            result[each], reasons[each.name] = None, str(error)
+    return result, reasons
 
 
 def by_name(value: Any) -> Any:

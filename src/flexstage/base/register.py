@@ -50,8 +50,8 @@ class Register(Generic[Entry]):
     @property
     def all(self) -> dict[str, Entry]:
         """Return every entry by kind."""
-        found = {kind: self.get(kind) for kind in self}
-        return {kind: entry for kind, entry in found.items() if entry is not None}
+        result = {kind: self.get(kind) for kind in self}
+        return {kind: entry for kind, entry in result.items() if entry is not None}
 
 
 def origin(module: str) -> str:
@@ -84,8 +84,8 @@ def _offered(group: str) -> tuple[EntryPoint, ...]:
 @functools.cache
 def _known_offers() -> Mapping[str, tuple[EntryPoint, ...]]:
     """Entry points of all registers, cached: every installed package has a separate file."""
-    found = entry_points()
-    return {group: tuple(found.select(group=group)) for group in GROUPS}
+    result = entry_points()
+    return {group: tuple(result.select(group=group)) for group in GROUPS}
 
 
 def _distribution(offer: EntryPoint) -> str:

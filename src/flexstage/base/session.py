@@ -31,9 +31,9 @@ class Session:
         """
 
         def kept(function: _Function) -> _Function:
-            found = functools.lru_cache(maxsize=most)(function)
-            self._kept[f"{function.__module__}.{function.__qualname__}"] = found
-            return cast("_Function", found)
+            result = functools.lru_cache(maxsize=most)(function)
+            self._kept[f"{function.__module__}.{function.__qualname__}"] = result
+            return cast("_Function", result)
 
         return kept
 

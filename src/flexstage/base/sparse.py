@@ -118,9 +118,9 @@ def as_csr(rows: Iterable[Sparse], size: int) -> Any:
     columns = [np.broadcast_to(part.columns, part.values.shape).ravel() for part in parts]
     counts = np.concatenate([np.full(len(part.values), len(part.columns)) for part in parts]) if parts else np.zeros(0, dtype=int)
     starts = np.concatenate([[0], np.cumsum(counts)])
-    found = scipy.sparse.csr_array((data, np.concatenate(columns) if columns else np.zeros(0, dtype=int), starts), (len(counts), size))
-    found.sum_duplicates()
-    return found
+    result = scipy.sparse.csr_array((data, np.concatenate(columns) if columns else np.zeros(0, dtype=int), starts), (len(counts), size))
+    result.sum_duplicates()
+    return result
 
 
 def block_diagonal(blocks: Iterable[Array]) -> Any:

@@ -26,4 +26,4 @@ def printable(text: str, keep: str = "") -> str:
         rest = rest.replace(sign, "")
     if rest.isprintable():  # fast path for most texts
         return text
-    return _STEERING.sub(lambda found: found[0] if found[0] in keep else found[0].encode("unicode_escape").decode("ascii"), text)
+    return _STEERING.sub(lambda result: result[0] if result[0] in keep else result[0].encode("unicode_escape").decode("ascii"), text)

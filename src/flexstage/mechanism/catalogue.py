@@ -42,8 +42,8 @@ class Catalogue:
     def extended(self, raw: Mapping[str, Any]) -> Catalogue:
         """Return the catalogue extended by another one's tree, whose entries take precedence.
 
-        >>> found = Catalogue((), {}).extended({"materials": {"ours": {"young": "200 GPa"}}})
-        >>> list(found.section(Material).entries)
+        >>> result = Catalogue((), {}).extended({"materials": {"ours": {"young": "200 GPa"}}})
+        >>> list(result.section(Material).entries)
         ['ours']
         """
         known = {section.name: section.entries for section in self.sections}

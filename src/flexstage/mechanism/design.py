@@ -64,11 +64,11 @@ def _is_batch(value: Array) -> bool:
 
 def _numbers(mechanism: Mechanism) -> list[Any]:
     """Arrays and complex numbers of a description."""
-    found: list[Any] = []
+    results: list[Any] = []
 
     def note(_: str, value: Any) -> Any:
-        found.extend([value] if isinstance(value, (complex, np.ndarray)) else ())
+        results.extend([value] if isinstance(value, (complex, np.ndarray)) else ())
         return value
 
     transformed(mechanism, note)
-    return found
+    return results

@@ -94,8 +94,8 @@ class BetweenFaces(StrokeActuator):
         """Errors of the stiffness: exactly one form, symmetric and positive definite."""
         stated = [name for name in ("diagonal", "matrix", "compliance") if getattr(self, name) is not None]
         if len(stated) != 1:
-            found = f"both {' and '.join(stated)} specified" if stated else "stiffness across its axis missing"
-            yield Finding("", found, "Specify one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
+            result = f"both {' and '.join(stated)} specified" if stated else "stiffness across its axis missing"
+            yield Finding("", result, "Specify one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
             return
         if stated[0] != "diagonal":
             yield from definite_findings(stated[0], stack(getattr(self, stated[0])))

@@ -463,13 +463,13 @@ def triangles(corners: Array) -> list[tuple[int, int, int]]:
     >>> triangles(np.array([[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]))
     [(0, 2, 3), (0, 1, 2)]
     """
-    left, found = list(range(len(corners))), []
+    left, result = list(range(len(corners))), []
     while len(left) > 3:
         ears = [_ear(corners, left, place) for place in range(len(left))]
         place = int(np.argmax(ears))
-        found.append((left[place - 1], left[place], left[(place + 1) % len(left)]))
+        result.append((left[place - 1], left[place], left[(place + 1) % len(left)]))
         del left[place]
-    return [(left[0], left[1], left[2]), *found]
+    return [(left[0], left[1], left[2]), *result]
 
 
 def _ear(corners: Array, left: list[int], place: int) -> float:

@@ -54,17 +54,17 @@ class Condensed:
 
 def condense(part: Superelement, where: str = "superelement") -> Condensed:
     """Read, check and reduce the part's matrices; cached. Raises `DesignError` with all errors, at keys below `where`."""
-    found = _condensed(part)
-    if isinstance(found, DesignError):
-        raise DesignError(_at(where, finding) for finding in found.findings)
-    return found
+    result = _condensed(part)
+    if isinstance(result, DesignError):
+        raise DesignError(_at(where, finding) for finding in result.findings)
+    return result
 
 
 def superelement_findings(part: Superelement, where: str) -> Iterator[Finding]:
     """Return the errors of a superelement, at keys below `where` (`parts.frame.ports.left.row`)."""
-    found = _condensed(part)
-    if isinstance(found, DesignError):
-        yield from (_at(where, finding) for finding in found.findings)
+    result = _condensed(part)
+    if isinstance(result, DesignError):
+        yield from (_at(where, finding) for finding in result.findings)
 
 
 def _at(where: str, finding: Finding) -> Finding:
@@ -335,8 +335,8 @@ def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Ar
         stated = np.real(first_design(tensor(part.inertia), 2))
         off = float(np.max(np.abs(stated - moments)))
         if off > STATED * max(float(np.trace(stated)), float(np.trace(moments))):
-            found = ", ".join(f"{each:.4g}" for each in np.diag(moments))
-            yield Finding("inertia", f"it differs by {off:.4g} kg m^2 from that of the matrices (xx, yy, zz = {found})", advice)
+            result = ", ".join(f"{each:.4g}" for each in np.diag(moments))
+            yield Finding("inertia", f"it differs by {off:.4g} kg m^2 from that of the matrices (xx, yy, zz = {result})", advice)
 
 
 def _millimetres(place: Array) -> str:

@@ -136,8 +136,8 @@ def contact_stiffness(part: Contact, material: Material) -> Array:
     >>> (contact_stiffness(ball, Paired.of(steel, steel)).diagonal()[:3] / 1e6).round(2).tolist()
     [15.87, 13.07, 13.07]
     """
-    found = hertz(part, material)
-    return np.sum(np.swapaxes(found.motion, -1, -2) @ found.matrix @ found.motion, axis=-3)
+    result = hertz(part, material)
+    return np.sum(np.swapaxes(result.motion, -1, -2) @ result.matrix @ result.motion, axis=-3)
 
 
 def _both(part: Contact, material: Material) -> tuple[Material, Material]:

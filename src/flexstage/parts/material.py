@@ -117,10 +117,10 @@ class Material(Description):
             what = "elastic constants incomplete (expected young and one of poisson and shear_modulus, or c11, c12 and c44)"
             yield Finding(missing, what, f"Use e.g. {example}")
         elif self.shear_modulus is not None:
-            found = np.real(self.young) / (2.0 * np.real(self.shear_modulus)) - 1.0
-            apart = 0.0 if self.poisson is None else np.abs(found - np.real(self.poisson)) / (1.0 + np.real(self.poisson))
-            first = float(np.ravel(found)[0])
-            if np.any(found <= -1.0) or np.any(found >= 0.5):
+            result = np.real(self.young) / (2.0 * np.real(self.shear_modulus)) - 1.0
+            apart = 0.0 if self.poisson is None else np.abs(result - np.real(self.poisson)) / (1.0 + np.real(self.poisson))
+            first = float(np.ravel(result)[0])
+            if np.any(result <= -1.0) or np.any(result >= 0.5):
                 yield Finding(
                     "shear_modulus",
                     f"invalid Poisson's ratio of young and shear_modulus (got {first:.4g}, expected -1 to 0.5)",

@@ -45,9 +45,9 @@ def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
         return tuple(_matrix_market(path) for path in paths)
     path = Path(part.file)
     names = tuple(name for name in (part.arrays.stiffness, part.arrays.mass, part.arrays.damping) if name)
-    found = _READERS[path.suffix.lower()](path, names)
-    require(_missing_findings(path, names, found))
-    return tuple(_plain(path, name, found[name]) for name in names)
+    result = _READERS[path.suffix.lower()](path, names)
+    require(_missing_findings(path, names, result))
+    return tuple(_plain(path, name, result[name]) for name in names)
 
 
 def digest_of(paths: tuple[str, ...]) -> str:
@@ -79,19 +79,19 @@ def _statement_findings(part: Superelement) -> Iterator[Finding]:
 
 
 def _version_findings(part: Superelement) -> Iterator[Finding]:
-    found = digest_of(part.files)
+    result = digest_of(part.files)
     named = " and ".join(Path(path).name for path in part.files)
     if not part.sha256:
-        yield Finding("sha256", f"digest of {named} missing", f'For the current version, add sha256 = "{found}"')
-    elif found != part.sha256.lower():
-        what = f"wrong digest of {named} (got sha256 {found[:12]}..., expected {part.sha256[:12]}...)"
-        yield Finding("sha256", what, f'Restore that version, or use sha256 = "{found}"')
+        yield Finding("sha256", f"digest of {named} missing", f'For the current version, add sha256 = "{result}"')
+    elif result != part.sha256.lower():
+        what = f"wrong digest of {named} (got sha256 {result[:12]}..., expected {part.sha256[:12]}...)"
+        yield Finding("sha256", what, f'Restore that version, or use sha256 = "{result}"')
 
 
-def _missing_findings(path: Path, names: tuple[str, ...], found: Mapping[str, MatrixLike]) -> Iterator[Finding]:
+def _missing_findings(path: Path, names: tuple[str, ...], result: Mapping[str, MatrixLike]) -> Iterator[Finding]:
     for key, name in zip(("stiffness", "mass", "damping"), names, strict=False):
-        if name not in found:
-            there = ", ".join(list(found)[:8]) or "no array of numbers"
+        if name not in result:
+            there = ", ".join(list(result)[:8]) or "no array of numbers"
             yield Finding(f"arrays.{key}", f'{path.name} has no array "{name}"; it has {there}', f'Use e.g. arrays = {{ {key} = "..." }}')
 
 
@@ -113,8 +113,8 @@ def _npz(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
             sizes = {info.filename.removesuffix(".npy"): info.file_size for info in archive.infolist()}
         for name in names:
             _require_room(path, name, sizes.get(name, 0))
-        with np.load(path, allow_pickle=False) as found:
-            return {name: found[name] if name in names else np.zeros(0) for name in found.files}
+        with np.load(path, allow_pickle=False) as result:
+            return {name: result[name] if name in names else np.zeros(0) for name in result.files}
     except (zipfile.BadZipFile, zlib.error, ValueError, OSError, EOFError, KeyError, NotImplementedError, MemoryError) as error:
         if isinstance(error, DesignError):
             raise
@@ -179,8 +179,8 @@ def _size_findings(stiffness: tuple[Path, int, int, int], *others: tuple[Path, i
 
 def _matrix_market(path: Path) -> MatrixLike:
     with _read_as_market(path):
-        found = scipy.io.mmread(str(path))
-    whole = found.tocsc() if scipy.sparse.issparse(found) else found
+        result = scipy.io.mmread(str(path))
+    whole = result.tocsc() if scipy.sparse.issparse(result) else result
     return _plain(path, "it", whole.toarray() if scipy.sparse.issparse(whole) and max(whole.shape) <= LARGEST_DENSE else whole)
 
 

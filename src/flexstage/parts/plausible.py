@@ -94,8 +94,8 @@ def _finding(rule: Mapping[str, Any], where: str, item: Any) -> Finding | None:
     outside = (sizes > 0.0) & ~((sizes >= rule["low"]) & (sizes <= rule["high"]))
     if not np.any(outside):
         return None
-    told = float(np.real(np.ravel(value))[int(np.argmax(outside))])
-    what = f"not plausible (got {told:.4g} {rule['unit']}, expected {rule['low']:.3g} to {rule['high']:.3g}; {rule['source']})"
+    number = float(np.real(np.ravel(value))[int(np.argmax(outside))])
+    what = f"not plausible (got {number:.4g} {rule['unit']}, expected {rule['low']:.3g} to {rule['high']:.3g}; {rule['source']})"
     return Finding(f"{where}.{rule['field']}" if where else rule["field"], what, "Check the unit and the power of ten")
 
 
@@ -108,5 +108,5 @@ def implausible(items: Iterable[tuple[str, Any]]) -> Iterator[Finding]:
     for where, each in items:
         item = each.part if isinstance(each, Restricted) else each
         own = [rule for rule in _rules() if type(item).__name__ in rule["classes"]]
-        found = [finding for rule in own if (finding := _finding(rule, where, item)) is not None]
-        yield from {finding.where: finding for finding in reversed(found)}.values()
+        results = [finding for rule in own if (finding := _finding(rule, where, item)) is not None]
+        yield from {finding.where: finding for finding in reversed(results)}.values()

@@ -270,12 +270,12 @@ class FreeForm(Contour):
 
     def height(self, station: Array) -> Array:
         """Height of the piece at a station [m]."""
-        found, away = np.zeros(np.shape(station)), np.abs(station)
+        result, away = np.zeros(np.shape(station)), np.abs(station)
         for left, step, cubic in self.pieces():
             share = (away - single(left)) / single(step)
             here = np.polynomial.polynomial.polyval(share, [single(each) for each in cubic])
-            found = np.where(share >= 0.0, here, found)
-        return found
+            result = np.where(share >= 0.0, here, result)
+        return result
 
 
 def _mean_slope(steps: tuple[Number, Number], rates: tuple[Number, Number]) -> Number:

@@ -105,8 +105,8 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity
     >>> here, there = Block("steel", (2.0, 1.0, 1.0)), Block("steel", (1.0, 1.0, 1.0), at=(1.0, 0.0, 0.0))
-    >>> [(_, found)] = common_moments([Drawn("a", here, 1.0, identity()), Drawn("b", there, 1.0, identity())])
-    >>> float(found.volume)
+    >>> [(_, result)] = common_moments([Drawn("a", here, 1.0, identity()), Drawn("b", there, 1.0, identity())])
+    >>> float(result.volume)
     -0.5
     """
     seen = [drawn for drawn in solids if not isinstance(drawn.solid, Imported)]
@@ -123,20 +123,20 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     groups: dict[tuple[int, ...], Moments] = {}
     for one, other in near:
         both = (seen[one], seen[other])
-        found = _region(both)
-        if found is None:
+        result = _region(both)
+        if result is None:
             problems += _refusals(both) if _meet(*both, scale) else ()
         elif np.any(np.real(both[0].density - np.asarray(both[1].density))):
             holes = [each for each in seen if each.solid.subtract and each.solid.material in {drawn.solid.material for drawn in both}]
-            left = found.volume - sum(moments.volume for hole in holes if (moments := _region((*both, hole))) is not None)
+            left = result.volume - sum(moments.volume for hole in holes if (moments := _region((*both, hole))) is not None)
             problems += _mixtures(*both, float(np.max(np.real(left)))) if np.any(np.real(left) > _FLUSH * scale**3) else ()
-        elif np.any(there := np.where(np.abs(found.volume) > _FLUSH * scale**3, 1.0, 0.0)):
-            groups[one, other] = found.times(there)
+        elif np.any(there := np.where(np.abs(result.volume) > _FLUSH * scale**3, 1.0, 0.0)):
+            groups[one, other] = result.times(there)
     require(problems)
     pairs, told = set(groups), 0
     while groups:
-        for group, found in groups.items():
-            yield seen[group[0]].density, found.times((-1.0) ** (len(group) - 1))
+        for group, result in groups.items():
+            yield seen[group[0]].density, result.times((-1.0) ** (len(group) - 1))
         told += len(groups)
         if told > _MOST:
             names = ", ".join(seen[number].name for number in next(iter(groups)))
@@ -147,10 +147,10 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         ]
         groups = {}
         for group in wider:
-            found = _region([seen[number] for number in group])
-            require(_refusals([seen[number] for number in group]) if found is None else ())
-            if found is not None and np.any(there := np.where(np.abs(found.volume) > _FLUSH * scale**3, 1.0, 0.0)):
-                groups[group] = found.times(there)
+            result = _region([seen[number] for number in group])
+            require(_refusals([seen[number] for number in group]) if result is None else ())
+            if result is not None and np.any(there := np.where(np.abs(result.volume) > _FLUSH * scale**3, 1.0, 0.0)):
+                groups[group] = result.times(there)
 
 
 def _box(drawn: Drawn) -> tuple[tuple[Array, int], ...]:
@@ -221,9 +221,9 @@ def _alignments(group: Sequence[Drawn]) -> Iterator[list[list[_Prism]]]:
     first, *others = sorted(group, key=lambda each: isinstance(each.solid, Sphere))
     for axis in _AXES.get(type(first.solid), ()):
         way = first.placed.rotation[..., :, axis]
-        found = [next((k for k in _AXES.get(type(each.solid), (0,)) if _is_along(each, k, way)), None) for each in others]
-        if None not in found:
-            yield [_prisms(first, axis), *(_prisms(each, k) for each, k in zip(others, found, strict=True) if k is not None)]
+        results = [next((k for k in _AXES.get(type(each.solid), (0,)) if _is_along(each, k, way)), None) for each in others]
+        if None not in results:
+            yield [_prisms(first, axis), *(_prisms(each, k) for each, k in zip(others, results, strict=True) if k is not None)]
 
 
 def _is_along(drawn: Drawn, axis: int, way: Array) -> bool:
@@ -270,10 +270,10 @@ def _moments(prisms: Sequence[_Prism]) -> Moments | None:
     ]
     circles = [(_unstepped(place[..., 1:]), _unstepped(each.radius)) for each, place in long if each.radius is not None]
     if len(long) < len(prisms):
-        found = _zone(prisms[-1].half, at[-1], (low, high), polygons, circles) if len(long) == len(prisms) - 1 else None
+        result = _zone(prisms[-1].half, at[-1], (low, high), polygons, circles) if len(long) == len(prisms) - 1 else None
     else:
-        found = _extruded(_section(polygons, circles), low, high)
-    return None if found is None else found.within(base).times(float(np.prod([each.sign for each in prisms])))
+        result = _extruded(_section(polygons, circles), low, high)
+    return None if result is None else result.within(base).times(float(np.prod([each.sign for each in prisms])))
 
 
 def _unstepped(value: Array) -> Array:
@@ -306,8 +306,8 @@ def polygon_moments(corners: Array, height: Array) -> Moments:
     >>> float(polygon_moments(square, np.asarray(2.0)).volume)
     2.0
     """
-    found = _extruded(_along(corners, np.roll(corners, -1, axis=-2)), -0.5 * height, 0.5 * height)
-    return found.within(Frame(np.roll(np.eye(3), -1, axis=0), np.zeros(3)))
+    result = _extruded(_along(corners, np.roll(corners, -1, axis=-2)), -0.5 * height, 0.5 * height)
+    return result.within(Frame(np.roll(np.eye(3), -1, axis=0), np.zeros(3)))
 
 
 # Sections
@@ -329,8 +329,8 @@ def _section(polygons: Sequence[_Polygon], circles: Sequence[_Circle]) -> Moment
     for corners, is_rectangle in polygons[1:]:
         pieces = [corners] if is_rectangle else [corners[..., [0, k, k + 1], :] for k in range(1, corners.shape[-2] - 1)]
         regions = [(weight * _turn(corners) * _turn(piece), _clip_by(region, piece)) for weight, region in regions for piece in pieces]
-    found = [_in_circles(region, circles).times(weight) for weight, region in regions]
-    return reduce(Moments.__add__, found)
+    results = [_in_circles(region, circles).times(weight) for weight, region in regions]
+    return reduce(Moments.__add__, results)
 
 
 def _turn(corners: Array) -> Array:

@@ -73,10 +73,10 @@ def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) ->
     >>> set_values(stage, set_value(stage, "parts.neck.thickness", 0.0014), ["parts.neck.thickness"])[0].new
     0.0014
     """
-    found = ((name, get(before, name), get(after, name)) for name in dict.fromkeys(addresses))
+    result = ((name, get(before, name), get(after, name)) for name in dict.fromkeys(addresses))
     return tuple(
         Change(name, quantity_of(after, name).si, old if isinstance(old, float) else None, new)
-        for name, old, new in found
+        for name, old, new in result
         if isinstance(new, float)
     )
 
@@ -109,24 +109,24 @@ def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
     >>> [figure.name for figure in key_figures(analyse(double_triangle(), Model.MAPPED))][8:10]
     ['frequency.platform.2', 'frequency.platform.3']
     """
-    found = (
+    result = (
         *requirement_figures(analysis.verdicts),
         *frequency_figures(analysis.modes),
         *stiffness_figures(analysis.statics),
         *loss_figures(analysis.lost_motion),
         *_workspace_figures(analysis.workspace),
     )
-    named = {figure.name: figure for figure in reversed(found)}
-    return tuple(named[name] for name in dict.fromkeys(figure.name for figure in found))
+    named = {figure.name: figure for figure in reversed(result)}
+    return tuple(named[name] for name in dict.fromkeys(figure.name for figure in result))
 
 
 def requirement_figures(verdicts: Iterable[Verdict]) -> Iterator[KeyFigure]:
     """Return the known values of requirements."""
     for verdict in verdicts:
         if verdict.value is not None:
-            asked = verdict.requirement
-            name = asked.key if asked.point == PLATFORM else f"{asked.key} at {asked.point}"
-            yield KeyFigure(name, asked.quantity.si, float(verdict.value))
+            requested = verdict.requirement
+            name = requested.key if requested.point == PLATFORM else f"{requested.key} at {requested.point}"
+            yield KeyFigure(name, requested.quantity.si, float(verdict.value))
 
 
 def frequency_figures(found: Modes | None) -> Iterator[KeyFigure]:

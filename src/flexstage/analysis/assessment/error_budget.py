@@ -20,7 +20,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 STEPS = "actuator steps"
 PARASITIC = "parasitic motion"
-"""Motion beyond the command, of forces that the elastic model gives for it: what a force-driven stage has for lost motion and crosstalk."""
+"""Parasitic motion of a force-driven stage under the forces of the elastic model, instead of lost motion and crosstalk."""
 NOISES = ("actuator noise", "floor vibration")
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
 

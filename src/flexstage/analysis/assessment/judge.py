@@ -95,15 +95,15 @@ def _large_doubt(bench: Bench, drawn: Verdict) -> str:
     if drawn.value is None or np.ndim(drawn.value) or not drawn.passed:
         return ""
     if line.kind is stroke and line.sense is Sense.AT_LEAST:
-        asked: Mapping[str, float] = {line.name: line.limit}
+        requested: Mapping[str, float] = {line.name: line.limit}
     elif line.kind in (corner, safety_at_strokes):
-        asked = bench.box()
+        requested = bench.box()
     elif line.kind.over_strokes and bench.kinematics.actuated:
         single = single_strokes(bench.mechanism, bench.kinematics)
-        asked = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True))
+        requested = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True))
     else:
         return ""
-    doubt = bench.small_motion.doubt(asked)
+    doubt = bench.small_motion.doubt(requested)
     return f"withheld: {doubt}" if doubt else ""
 
 

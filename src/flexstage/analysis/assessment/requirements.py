@@ -114,16 +114,16 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     >>> read.kind.form, read.name, read.sense.value, read.limit
     ('stroke.<axis>', 'x', 'at least', 5e-05)
     """
-    found: list[Requirement] = []
+    results: list[Requirement] = []
     findings: list[Finding] = []
     for key, text in mechanism.requirements.items():
         try:
-            found.append(_read(mechanism, f"requirements.{key}", key, text))
+            results.append(_read(mechanism, f"requirements.{key}", key, text))
         except DesignError as error:
             findings += error.findings
     if findings:
         raise DesignError(findings)
-    return tuple(found)
+    return tuple(results)
 
 
 def _names(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
@@ -166,9 +166,9 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
         raise refuse(
             where, f'invalid requirement (got "{text}")', 'Use "at least" or "at most" and a value, e.g. "at least 50 um at chuck"'
         )
-    asked = _measure(mechanism, f"{key} at {match['point']}" if match["point"] else key, where)
-    limit = parse(match["value"], asked.quantity, where=where)
-    stated = {each.name: getattr(asked, each.name) for each in fields(asked) if each.name != "key"}
+    requested = _measure(mechanism, f"{key} at {match['point']}" if match["point"] else key, where)
+    limit = parse(match["value"], requested.quantity, where=where)
+    stated = {each.name: getattr(requested, each.name) for each in fields(requested) if each.name != "key"}
     return Requirement(key, **stated, text=text, sense=Sense(match["sense"]), limit=limit)
 
 
@@ -200,9 +200,9 @@ def _measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     return Measure(f"{match['key']} over {match['path']}", over(kind), name, quantity, point, path=match["path"])
 
 
-def _along(mechanism: Mechanism, asked: tuple[str, MeasureKind, str], at: str | None, where: str) -> Measure:
+def _along(mechanism: Mechanism, requested: tuple[str, MeasureKind, str], at: str | None, where: str) -> Measure:
     """Measure along a path, or at a value of its drive."""
-    key, kind, name = asked
+    key, kind, name = requested
     drive = drive_quantity(expand(mechanism), mechanism.paths[name].drive, f"paths.{name}.drive")
     place = None if at is None else parse(at, drive, where=where)
     quantity = kind.about if kind.about is not None and drive is ANGLE else kind.quantity

@@ -106,8 +106,8 @@ def sensitivities(
     and for addresses of anything but a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
-    >>> bool((found.relative_frequency.values < 0.0).all())  # heavier is slower
+    >>> result = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
+    >>> bool((result.relative_frequency.values < 0.0).all())  # heavier is slower
     True
     """
     names = addresses(mechanism) if parameters is None else parameters
@@ -187,8 +187,8 @@ def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int
     [[0, 2], [1]]
     """
     level = [override_level(mechanism, name) for name in names]
-    for wanted in sorted(set(level)):
-        members = [position for position, found in enumerate(level) if found == wanted]
+    for target in sorted(set(level)):
+        members = [position for position, result in enumerate(level) if result == target]
         for start in range(0, len(members), _CHUNK):
             yield members[start : start + _CHUNK]
 

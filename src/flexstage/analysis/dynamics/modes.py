@@ -97,8 +97,8 @@ class Modes(Result):
 
     def mode(self, index: int) -> Mode:
         """One mode of the first design."""
-        told = (self.frequencies, self.share, self.compliance_share)
-        frequency, share, compliance = (float(first_design(each, 1)[index]) for each in told)
+        values = (self.frequencies, self.share, self.compliance_share)
+        frequency, share, compliance = (float(first_design(each, 1)[index]) for each in values)
         energies = first_design(self.energies, 2)[:, index]
         bodies = {self.bodies[place]: float(energies[place]) for place in argsort_descending(energies, 1e-6) if energies[place] >= 0.01}
         platform, local = index in self.platform, index in self.local
@@ -273,15 +273,15 @@ def _align(platform: Array, solved: Eigen, groups: list[list[int]], weights: Arr
 
 def _leading(rows: Array, least: float, basis: Array) -> Array:
     """Indices of the rows (n, k) that span them within `basis` (k, m), longest remaining first, with squares above `least`."""
-    left, found = rows @ basis, list[int]()
-    while len(found) < basis.shape[1]:
+    left, result = rows @ basis, list[int]()
+    while len(result) < basis.shape[1]:
         squares = np.sum(left**2, axis=1)
         row = int(np.argmax(squares >= (1.0 - _EQUAL) * np.max(squares)))
         if squares[row] <= least:
             break
-        found.append(row)
+        result.append(row)
         left = left - np.outer(left @ left[row], left[row]) / squares[row]
-    return np.array(found, dtype=int)
+    return np.array(result, dtype=int)
 
 
 def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array, Array]:
@@ -357,8 +357,8 @@ def _set(names: list[str]) -> str:
     """Names in one text, consecutive instances as a range: `B1-B3/tip`."""
     parts = [_NUMBERED.fullmatch(name) for name in names]
     copies: dict[tuple[str, ...], list[int]] = {}
-    for name, found in zip(names, parts, strict=True):
-        copies.setdefault((name,) if found is None else (found[1], found[3]), []).append(0 if found is None else int(found[2]))
+    for name, result in zip(names, parts, strict=True):
+        copies.setdefault((name,) if result is None else (result[1], result[3]), []).append(0 if result is None else int(result[2]))
     return ", ".join(text for key, numbers in copies.items() for text in _range(key, numbers))
 
 

@@ -55,8 +55,8 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
     >>> model = lumped(double_triangle())
-    >>> found = Moving(modes(model), model)
-    >>> pairs = pair_modes(found, found)
+    >>> result = Moving(modes(model), model)
+    >>> pairs = pair_modes(result, result)
     >>> all(index == pair.index for index, pair in pairs.items()), round(min(pair.assurance for pair in pairs.values()), 9)
     (True, 1.0)
     """
@@ -66,14 +66,14 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     near = np.flatnonzero(frequencies <= highest)
     rows, columns = scipy.optimize.linear_sum_assignment(-((first[:, near].T @ second) ** 2))
     partner = dict(zip(near[rows].tolist(), columns.tolist(), strict=True))
-    found: dict[int, Pair] = {}
+    result: dict[int, Pair] = {}
     for group in clusters(frequencies[near], _CLOSE):
         members = sorted(partner[index] for index in group if index in partner)
         shared = _shared_energy(first[:, group], second[:, sorted(_with_close(members, others))])
-        found |= {
+        result |= {
             index: Pair(member, float(others[member]), float(share)) for index, member, share in zip(group, members, shared, strict=False)
         }
-    return {index: found[index] for index in own.modes.platform if index in found}
+    return {index: result[index] for index in own.modes.platform if index in result}
 
 
 def _with_close(members: Iterable[int], frequencies: Array) -> set[int]:

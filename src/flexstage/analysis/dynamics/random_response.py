@@ -114,8 +114,8 @@ def random_response(
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
     >>> floor = {"ground.x": Spectrum(1e-18, rate=Rate.VALUE)}  # 1 nm per root hertz
-    >>> found = random_response(lumped(parallelogram()), ["platform.x"], floor, (1.0, 101.0))
-    >>> round(float(found.rms[0]) * 1e9, 1)  # far below the resonance the platform follows: 1 nm (100 Hz)^(1/2)
+    >>> result = random_response(lumped(parallelogram()), ["platform.x"], floor, (1.0, 101.0))
+    >>> round(float(result.rms[0]) * 1e9, 1)  # far below the resonance the platform follows: 1 nm (100 Hz)^(1/2)
     10.0
     """
     require(spectrum_findings(spectra, band))
@@ -137,22 +137,24 @@ def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]
     ['band', 'ground.z']
     """
     low, high = band
-    found = (
+    result = (
         [] if 0.0 < low < high < np.inf else [Finding("band", f"invalid band (got {low:g} Hz to {high:g} Hz)", "Use 0 < low < high in Hz")]
     )
     if not spectra:
-        found.append(Finding("spectra", "no input has a spectrum", "Add at least one, e.g. {'ground.z': Spectrum(1e-18)}"))
+        result.append(Finding("spectra", "no input has a spectrum", "Add at least one, e.g. {'ground.z': Spectrum(1e-18)}"))
     for name, spectrum in spectra.items():
-        found += _table_findings(name, np.asarray(spectrum.density), spectrum.frequencies)
-    return found
+        result += _table_findings(name, np.asarray(spectrum.density), spectrum.frequencies)
+    return result
 
 
 def _table_findings(name: str, density: Array, frequencies: Array | None) -> list[Finding]:
     wrong = not np.all(np.isfinite(density)) or np.any(density < 0.0) or (frequencies is not None and np.any(density == 0.0))
-    found = [Finding(name, "its density is negative or not finite, or zero in a table", "Correct the entries")] if wrong else []
+    findings = [Finding(name, "its density is negative or not finite, or zero in a table", "Correct the entries")] if wrong else []
     if frequencies is not None and (density.shape != frequencies.shape or np.any(np.diff(frequencies) <= 0.0) or frequencies[0] <= 0.0):
-        found.append(Finding(name, "its frequencies do not ascend from above 0, or are not as many as the densities", "Correct the table"))
-    return found
+        findings.append(
+            Finding(name, "its frequencies do not ascend from above 0, or are not as many as the densities", "Correct the table")
+        )
+    return findings
 
 
 def _panels(model: LinearModel, law: Damping, spectra: Mapping[str, Spectrum], band: tuple[float, float]) -> Array:

@@ -41,8 +41,8 @@ def response(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
-    >>> found = response(lumped(parallelogram()), ["S"], ["B"], np.array([0.0, 100.0]))
-    >>> found.values.shape, found.units
+    >>> result = response(lumped(parallelogram()), ["S"], ["B"], np.array([0.0, 100.0]))
+    >>> result.values.shape, result.units
     ((2, 1, 1), (('1',),))
     """
     law = damping_law(model, damping)
@@ -62,8 +62,8 @@ def transmissibility(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
-    >>> found = transmissibility(lumped(parallelogram()), frequencies=np.array([0.01]))
-    >>> bool(np.allclose(found.values[0], np.eye(6), atol=1e-6))
+    >>> result = transmissibility(lumped(parallelogram()), frequencies=np.array([0.01]))
+    >>> bool(np.allclose(result.values[0], np.eye(6), atol=1e-6))
     True
     """
     return response(model, outputs, (GROUND,), frequencies, damping=damping)

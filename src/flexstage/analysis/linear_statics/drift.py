@@ -215,11 +215,11 @@ def _twists(assembly: Assembly, model: LinearModel, motion: Array) -> dict[str, 
 
 
 def _motions(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
-    found = {PLATFORM: twists[PLATFORM]}
+    result = {PLATFORM: twists[PLATFORM]}
     for name, (body, point) in thermal.assembly.points.items():
         carry = transport(point - thermal.assembly.bodies[body].reference)
-        found[name] = carry @ twists[body] + thermal.growth(body, point)
-    return _label(found, COMPONENTS, TWIST_UNITS)
+        result[name] = carry @ twists[body] + thermal.growth(body, point)
+    return _label(result, COMPONENTS, TWIST_UNITS)
 
 
 def _gauges(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:

@@ -65,8 +65,8 @@ def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWork
     >>> import flexstage as fs
     >>> stage = fs.case("voice-coil-stage")
     >>> ideal, elastic = fs.ideal(stage), fs.lumped(stage)
-    >>> found = drive_force(ideal, elastic, fs.force_workspace(stage, ideal, elastic))
-    >>> bool(abs(found.total[0]) < 0.01), round(float(found.shares.values.sum()), 9)
+    >>> result = drive_force(ideal, elastic, fs.force_workspace(stage, ideal, elastic))
+    >>> bool(abs(result.total[0]) < 0.01), round(float(result.shares.values.sum()), 9)
     (True, 1.0)
     """
     if model.is_sparse or model.designs:

@@ -37,8 +37,8 @@ def amplified(mechanism: Mechanism) -> Amplified:
     assembly, model = expand(mechanism), lumped(mechanism)
     own = assembly.actuator(next(iter(assembly.actuators))) if len(assembly.actuators) == 1 else None
     if not isinstance(own, StrokeActuator):
-        found = ", ".join(assembly.actuators) or "none"
-        raise refuse("actuators", f"wrong number of actuators (got {found}, expected one stroke actuator)", "Use a stage with one stack")
+        result = ", ".join(assembly.actuators) or "none"
+        raise refuse("actuators", f"wrong number of actuators (got {result}, expected one stroke actuator)", "Use a stage with one stack")
     twist = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
     moved = static_gain(model, twist, model.strokes).values[..., 0] * np.asarray(own.stroke)[..., None]
     charged = own if isinstance(own, ChargedActuator) else None

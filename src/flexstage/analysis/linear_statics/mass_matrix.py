@@ -53,8 +53,8 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
 
     >>> import flexstage as fs
     >>> stage = fs.case("double-triangle")
-    >>> found = fs.mass_matrix(stage, fs.lumped(stage))
-    >>> [round(float(matrix.at("platform.fx", "platform.x")), 3) for matrix in (found.rigid, found.reduced)]
+    >>> result = fs.mass_matrix(stage, fs.lumped(stage))
+    >>> [round(float(matrix.at("platform.fx", "platform.x")), 3) for matrix in (result.rigid, result.reduced)]
     [13.997, 14.441]
     """
     assembly = expand(mechanism)
@@ -77,13 +77,13 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
 
 def _static_shapes(model: LinearModel, point: str) -> Array:
     """Static coordinates (..., n, 6) per unit twist of a point. Refuses locked points and free internal modes."""
-    found = statics(model, load_point=point, read_point=point)
-    require(Finding(point, reason, "Use the lumped model") for name, reason in found.reasons.items() if name == "stiffness")
-    rows = model.output[..., model.output_index(found.compliance.rows), :]
-    shapes = displacement(model, np.swapaxes(rows, -1, -2)) @ found.stiffness.values
+    result = statics(model, load_point=point, read_point=point)
+    require(Finding(point, reason, "Use the lumped model") for name, reason in result.reasons.items() if name == "stiffness")
+    rows = model.output[..., model.output_index(result.compliance.rows), :]
+    shapes = displacement(model, np.swapaxes(rows, -1, -2)) @ result.stiffness.values
     if model.floating is None:
         return shapes
-    axes = np.isinf(np.diag(found.compliance.values))  # without stiffness: the floating motions that make up the twist
+    axes = np.isinf(np.diag(result.compliance.values))  # without stiffness: the floating motions that make up the twist
     missing = (np.eye(len(rows)) - rows @ shapes)[axes]
     return shapes + model.floating @ np.linalg.solve(rows[axes] @ model.floating, missing)
 
@@ -92,8 +92,8 @@ def _congruent(matrix: Array, motions: Array) -> Array:
     return _symmetric(np.swapaxes(motions, -1, -2) @ matrix @ motions)
 
 
-def _symmetric(found: Array) -> Array:
-    return 0.5 * (found + np.swapaxes(found, -1, -2))
+def _symmetric(result: Array) -> Array:
+    return 0.5 * (result + np.swapaxes(result, -1, -2))
 
 
 def _label(values: Array | None, point: str) -> Matrix | None:

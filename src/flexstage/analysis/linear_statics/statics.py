@@ -173,10 +173,10 @@ def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
     return Matrix(values, names, ("free", "held"), units)
 
 
-def _pushed(found: Statics) -> Array:
+def _pushed(result: Statics) -> Array:
     """1 / C_ii (..., 6), NaN along locked degrees of freedom."""
-    along = np.diagonal(found.compliance.values, axis1=-2, axis2=-1)
-    if not np.isnan(found.stiffness.values).any():
+    along = np.diagonal(result.compliance.values, axis1=-2, axis2=-1)
+    if not np.isnan(result.stiffness.values).any():
         return 1.0 / along
     sizes = np.abs(np.real(along)).reshape(*along.shape[:-1], 2, 3)
     moved = (sizes > _SINGULAR * np.max(sizes, axis=-1, keepdims=True)).reshape(along.shape)

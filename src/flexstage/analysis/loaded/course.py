@@ -54,48 +54,48 @@ class Course:
 
     def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State) -> paths.LoadPath:
         """Equilibria along the path."""
-        wanted, hold = self._wanted(model, rest, None)
-        found = paths.load_path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
-        _require_continuation(found.state)
-        return found
+        target, hold = self._wanted(model, rest, None)
+        result = paths.load_path(model, self.drive, target, loads=self.loads, hold=hold, weight=self.weight)
+        _require_continuation(result.state)
+        return result
 
     def _wanted(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None) -> tuple[Array, dict[str, float]]:
         """Values of the drive relative to the nominal position, and of the fixed coordinates."""
-        wanted = self.values if values is None else values
+        target = self.values if values is None else values
         driven = self.drive in {channel.name for channel in model.inputs}
         start = 0.0 if driven else float(operating_point.coordinate(rest, self.drive))
-        return start + wanted, {name: float(operating_point.coordinate(rest, name)) for name in self.locked}
+        return start + target, {name: float(operating_point.coordinate(rest, name)) for name in self.locked}
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
         """Points of the path, for the computation of single columns."""
-        (found,) = self.points_of_designs((model,), values)
-        return found
+        (result,) = self.points_of_designs((model,), values)
+        return result
 
     def points_of_designs(self, models: Sequence[nonlinear.Nonlinear], values: Array | None = None) -> list[strokes.Points]:
         """Points of several designs of one structure, in one run."""
         rests = [_resting(each) for each in equilibrium.equilibria(models, self.loads, weight=self.weight)]
-        asked = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
-        wanted, hold = [each for each, _ in asked], [each for _, each in asked]
-        found = paths.equilibria_of_designs(models, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        requested = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
+        target, hold = [each for each, _ in requested], [each for _, each in requested]
+        result = paths.equilibria_of_designs(models, self.drive, target, loads=self.loads, hold=hold, weight=self.weight)
         states = []
-        for state, rest, locked, each in zip(found, rests, hold, wanted, strict=True):
+        for state, rest, locked, each in zip(result, rests, hold, target, strict=True):
             begin, start = paths.begin_along(rest, self.drive, self.loads, locked, self.weight)
             states.append(paths.continue_along(begin, state, each - start))
         for each in states:
             _require_continuation(each)
-        return [strokes.Points(self.drive, each, state, self.locked, rest) for each, state, rest in zip(wanted, states, rests, strict=True)]
+        return [strokes.Points(self.drive, each, state, self.locked, rest) for each, state, rest in zip(target, states, rests, strict=True)]
 
 
-def _resting(found: equilibrium.State) -> equilibrium.State:
-    equilibrium.require_equilibrium(found)
-    return found
+def _resting(result: equilibrium.State) -> equilibrium.State:
+    equilibrium.require_equilibrium(result)
+    return result
 
 
-def _require_continuation(found: equilibrium.State) -> None:
+def _require_continuation(result: equilibrium.State) -> None:
     """Refuse states that do not continue the static equilibrium, with the reason of the first."""
-    beyond = np.flatnonzero(found.status > Status.SINGULAR)
+    beyond = np.flatnonzero(result.status > Status.SINGULAR)
     if beyond.size:
-        equilibrium.require_equilibrium(found.case(int(beyond[0])))
+        equilibrium.require_equilibrium(result.case(int(beyond[0])))
 
 
 def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:

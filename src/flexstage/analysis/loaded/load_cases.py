@@ -125,9 +125,9 @@ class CaseFactors(Result):
         short = [case for case in self.cases if case.factor < bound]
         if short:
             least = min(short, key=lambda case: case.factor)
-            asked = f"(expected {self.demand:g} or more)" if self.demand > 1.0 else ""
+            requested = f"(expected {self.demand:g} or more)" if self.demand > 1.0 else ""
             others = f"; {len(short) - 1} more of {len(self.cases)} load cases have a factor below {bound:g}" if short[1:] else ""
-            what = f"critical load factor of {least.load} {least.factor:.4g}{asked}: {buckling_clause(least.buckling_mode)}{others}"
+            what = f"critical load factor of {least.load} {least.factor:.4g}{requested}: {buckling_clause(least.buckling_mode)}{others}"
             yield Finding(least.place, what, "Reduce stroke or load, or stiffen the parts that carry the load")
         for case in self.cases:
             if np.isnan(case.factor) and not case.bound >= bound:
@@ -155,8 +155,8 @@ def buckling_factors(
     ['at rest', 'B = -5.429 um', 'B = 32.57 um']
     """
     model = nonlinear(mechanism, temperature=temperature)
-    asked = load_cases(mechanism) if cases is None else cases
-    return CaseFactors(tuple(_factor(model, case, most) for case in asked), demand, model.provenance)
+    requested = load_cases(mechanism) if cases is None else cases
+    return CaseFactors(tuple(_factor(model, case, most) for case in requested), demand, model.provenance)
 
 
 def load_cases(mechanism: Mechanism) -> tuple[LoadCase, ...]:
@@ -185,15 +185,15 @@ def path_cases(mechanism: Mechanism, name: str, places: Mapping[str, float] | No
     >>> [each.place for each in path_cases(case("long-travel-xy"), "x")]
     ['platform.x = -5 mm', 'platform.x = 5 mm']
     """
-    stated, found = mechanism.paths[name], course(mechanism, name)
-    ends = {f"{stated.drive} = {text}": value for text, value in zip(stated.to, found.values[[0, -1]], strict=True)}
-    text = ", ".join(f"{load} = {stated.hold.get(load) or stated.hold[_coordinate(load)]}" for load in found.loads)
+    stated, result = mechanism.paths[name], course(mechanism, name)
+    ends = {f"{stated.drive} = {text}": value for text, value in zip(stated.to, result.values[[0, -1]], strict=True)}
+    text = ", ".join(f"{load} = {stated.hold.get(load) or stated.hold[_coordinate(load)]}" for load in result.loads)
     for place, value in (ends if places is None else places).items():
-        at, own = ({found.drive: value} if value else {}), [each for each in _own(mechanism) if found.weight or each != WEIGHT]
-        for load in own if at or found.loads or places is not None else ():
-            yield LoadCase(load, place, {load: 1.0}, stays=found.loads, at=at, locked=found.locked, gravity=found.weight)
-        if found.loads:
-            yield LoadCase(text, place, found.loads, at=at, locked=found.locked, gravity=found.weight)
+        at, own = ({result.drive: value} if value else {}), [each for each in _own(mechanism) if result.weight or each != WEIGHT]
+        for load in own if at or result.loads or places is not None else ():
+            yield LoadCase(load, place, {load: 1.0}, stays=result.loads, at=at, locked=result.locked, gravity=result.weight)
+        if result.loads:
+            yield LoadCase(text, place, result.loads, at=at, locked=result.locked, gravity=result.weight)
 
 
 def _coordinate(load: str) -> str:
@@ -234,14 +234,14 @@ def _place(name: str, value: float, unit: str) -> str:
 
 def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
     try:
-        found = case_critical(model, case, most=most)
+        result = case_critical(model, case, most=most)
     except NoCriticalLoadError as error:
         return CaseFactor(case.load, case.place, np.inf, "", "", error.findings[0].what, most)
     except DesignError as error:
         bound = error.bound if isinstance(error, LowerBoundError) else np.nan
         return CaseFactor(case.load, case.place, np.nan, "", "", "; ".join(each.what for each in error.findings), bound)
-    moving = found.link or " and ".join(_moving(found))
-    return CaseFactor(case.load, case.place, found.factor, found.kind.value, moving, "", found.factor, found)
+    moving = result.link or " and ".join(_moving(result))
+    return CaseFactor(case.load, case.place, result.factor, result.kind.value, moving, "", result.factor, result)
 
 
 def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tolerance: float = ENOUGH) -> Critical:
@@ -286,8 +286,8 @@ def _brought(point: Conditions) -> tuple[State | None, dict[str, float]]:
     return there, hold
 
 
-def _moving(found: Critical) -> tuple[str, ...]:
+def _moving(result: Critical) -> tuple[str, ...]:
     """Bodies with the largest motion in the buckling mode, at most three."""
-    sizes = np.sqrt(np.sum(found.shape[:, :3] ** 2, axis=-1))
-    most = [found.bodies[place] for place in np.argsort(-sizes, kind="stable") if sizes[place] > 0.5 * np.max(sizes)]
+    sizes = np.sqrt(np.sum(result.shape[:, :3] ** 2, axis=-1))
+    most = [result.bodies[place] for place in np.argsort(-sizes, kind="stable") if sizes[place] > 0.5 * np.max(sizes)]
     return tuple(most[:3])

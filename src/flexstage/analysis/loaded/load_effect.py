@@ -103,11 +103,11 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     >>> load_effect(parallelogram()).model is None
     True
     """
-    found = under_load(mechanism)
-    if found is None or np.ndim(found.dead) or np.iscomplexobj(found.dead) or found.refusals:
+    result = under_load(mechanism)
+    if result is None or np.ndim(result.dead) or np.iscomplexobj(result.dead) or result.refusals:
         return None
     causes = [*([_BENT] if any(map(_is_bent, mechanism.parts.values())) else []), *([_WARM] if _is_warm(mechanism) else [])]
-    bound, bent = _bound(found), bool(causes)
+    bound, bent = _bound(result), bool(causes)
     cause = f"weight, payloads, forces and {' and '.join(causes)}" if bent else LoadEffect.cause
     if bound < FELT and not bent:
         return LoadEffect(bound, "", "", None)
@@ -133,12 +133,12 @@ def felt_links(mechanism: Mechanism) -> LinearModel:
     False
     """
     drawn = standing(mechanism)
-    found = None if drawn.designs else load_effect(mechanism)
-    return drawn if found is None or found.links is None else found.links
+    result = None if drawn.designs else load_effect(mechanism)
+    return drawn if result is None or result.links is None else result.links
 
 
-def _bound(found: Stability) -> float:
-    return max(1.0 / float(found.dead), float(found.stiffens))
+def _bound(result: Stability) -> float:
+    return max(1.0 / float(result.dead), float(result.stiffens))
 
 
 def _is_bent(part: Part) -> bool:
@@ -163,8 +163,8 @@ def _felt(mechanism: Mechanism) -> LoadEffect:
     equilibrium.require_equilibrium(state)
     if int(critical_load.unstable_motions(state)):
         raise refuse("stage", "no stable equilibrium found under weight and loads", "Run flexstage buckle to find the critical load")
-    found = _compare(linearise.linearise(unloaded), linearise.linearise(state))
-    return replace(found, state=state if found.model is not None else None)
+    result = _compare(linearise.linearise(unloaded), linearise.linearise(state))
+    return replace(result, state=state if result.model is not None else None)
 
 
 def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:

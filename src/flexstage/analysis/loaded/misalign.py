@@ -90,8 +90,8 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
     stay free. Raises `DesignError` for unknown names and for instances that do not join the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> found = misalign(parallelogram(), "left", "ry", 1e-3, points=3)
-    >>> found.along.columns[:2]
+    >>> result = misalign(parallelogram(), "left", "ry", 1e-3, points=3)
+    >>> result.along.columns[:2]
     ('ry', 'load')
     """
     forced = _forced(mechanism, copy, axis)
@@ -151,8 +151,8 @@ def seated(mechanism: Mechanism) -> tuple[str, ...]:
     """
     assembly = expand(mechanism)
     known = [name for name, _, _ in copies(mechanism)]
-    found = [name for name in known if any(GROUND in assembly.links[link].joins for link in _links_of(assembly, name))]
-    return (*found, *(name for name, link in assembly.links.items() if GROUND in link.joins and name.partition("/")[0] not in known))
+    results = [name for name in known if any(GROUND in assembly.links[link].joins for link in _links_of(assembly, name))]
+    return (*results, *(name for name, link in assembly.links.items() if GROUND in link.joins and name.partition("/")[0] not in known))
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,20 +171,20 @@ class _Forced:
         """Equilibria for misalignments (k,) that continue the aligned stage."""
         begin = equilibrium(self.model, hold=self.hold(np.array(0.0)))
         require_equilibrium(begin)
-        found = equilibrium(self.model, hold=self.hold(sizes), options=SolverOptions(arcs=0))
-        return continue_along(begin, found, sizes)
+        result = equilibrium(self.model, hold=self.hold(sizes), options=SolverOptions(arcs=0))
+        return continue_along(begin, result, sizes)
 
     def limits(self, sign: float) -> tuple[float, float]:
         """Critical misalignment in one direction (NaN: none), and the largest one known to be stable."""
         most = _MOST * (self.model.size if np.any(self.direction[:3]) else 1.0)
         gain, none = ({name: float(value) for name, value in self.hold(size).items()} for size in (sign, 0.0))
         try:
-            found = sign * critical_load(self.model, gain, hold=none, most=most).factor
+            result = sign * critical_load(self.model, gain, hold=none, most=most).factor
         except NoCriticalLoadError:
             return np.nan, sign * most
         except LowerBoundError as error:
             return np.nan, sign * error.bound
-        return found, found
+        return result, result
 
 
 def _forced(mechanism: Mechanism, copy: str, axis: str) -> _Forced:

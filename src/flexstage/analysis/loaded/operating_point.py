@@ -81,31 +81,31 @@ def operating_point(
     for a released stage that is unstable.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> found = operating_point(parallelogram(), {"platform.x": 1e-4})
-    >>> round(float(found.moved.at("platform", "x")) * 1e6, 3), round(float(found.held.at("platform.x", "force")))
+    >>> result = operating_point(parallelogram(), {"platform.x": 1e-4})
+    >>> round(float(result.moved.at("platform", "x")) * 1e6, 3), round(float(result.held.at("platform.x", "force")))
     (100.0, 1939)
     """
-    asked = Conditions(nonlinear(mechanism, temperature=temperature), loads or {}, at or {}, tuple(dict.fromkeys(fixed)))
-    require(_contradictions(asked))
-    rest, state = asked.rest, asked.reach(1.0)
+    requested = Conditions(nonlinear(mechanism, temperature=temperature), loads or {}, at or {}, tuple(dict.fromkeys(fixed)))
+    require(_contradictions(requested))
+    rest, state = requested.rest, requested.reach(1.0)
     if not bool(state.converged):
-        raise refuse("--at", *_how_far(asked))
-    _require_stable(asked, state)
-    if asked.at:
-        require_continuation(asked.reach(0.0), state)
-    places = (PLATFORM, *(name for name in wrench_places(asked.model.assembly) if name not in asked.model.bodies))
+        raise refuse("--at", *_how_far(requested))
+    _require_stable(requested, state)
+    if requested.at:
+        require_continuation(requested.reach(0.0), state)
+    places = (PLATFORM, *(name for name in wrench_places(requested.model.assembly) if name not in requested.model.bodies))
     units = (TWIST_UNITS,) * len(places)
     sag = np.stack([rest.twist(name) for name in places])
-    linear = linearise(state, locked=asked.fixed)
+    linear = linearise(state, locked=requested.fixed)
     return OperatingPoint(
         sag=Matrix(sag, places, COMPONENTS, units),
-        moved=Matrix(np.stack([state.twist(name) for name in places]) - sag, places, COMPONENTS, units) if asked.at else None,
-        held=_held(asked, state),
-        locked=asked.fixed,
+        moved=Matrix(np.stack([state.twist(name) for name in places]) - sag, places, COMPONENTS, units) if requested.at else None,
+        held=_held(requested, state),
+        locked=requested.fixed,
         rest=rest,
         state=state,
         linear=linear,
-        doubts=tuple(_idle(asked, state)),
+        doubts=tuple(_idle(requested, state)),
         provenance=linear.provenance,
     )
 
@@ -132,9 +132,9 @@ class Conditions:
     @cached_property
     def rest(self) -> State:
         """Static equilibrium under the constant loads alone."""
-        found = equilibrium(self.model, self.loads, weight=self.weight)
-        require_equilibrium(found)
-        return found
+        result = equilibrium(self.model, self.loads, weight=self.weight)
+        require_equilibrium(result)
+        return result
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -170,36 +170,38 @@ def coordinate(state: State, name: str) -> Array:
     return state.twist(owner)[..., COMPONENTS.index(component)]
 
 
-def _contradictions(asked: Conditions) -> Iterator[Finding]:
-    for name in asked.driven:
-        if name in asked.loads:
+def _contradictions(requested: Conditions) -> Iterator[Finding]:
+    for name in requested.driven:
+        if name in requested.loads:
             yield Finding(name, "it is both a constant load and a drive", "Remove one of the two")
-    for name in asked.coordinates:
+    for name in requested.coordinates:
         owner, _, component = name.rpartition(".")
         load = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else ""
-        if name in asked.at and (load in asked.loads or load in asked.at):
+        if name in requested.at and (load in requested.loads or load in requested.at):
             what = f"its force is a result, but {load} specifies it"
             yield Finding(name, what, f"Remove {load}, or {name}")
-    bodies = [asked.model.assembly.points[owner][0] if owner in asked.model.assembly.points else owner for owner in _owners(asked)]
+    bodies = [
+        requested.model.assembly.points[owner][0] if owner in requested.model.assembly.points else owner for owner in _owners(requested)
+    ]
     for body in dict.fromkeys(bodies):
         if bodies.count(body) > 6:
             yield Finding(body, f"too many coordinates fixed (got {bodies.count(body)}, expected 6 at most)", "Fix fewer")
 
 
-def _owners(asked: Conditions) -> list[str]:
-    return [name.rpartition(".")[0] for name in asked.coordinates]
+def _owners(requested: Conditions) -> list[str]:
+    return [name.rpartition(".")[0] for name in requested.coordinates]
 
 
-def _how_far(asked: Conditions) -> tuple[str, str]:
+def _how_far(requested: Conditions) -> tuple[str, str]:
     """Message for a missing equilibrium, with the largest share of the displacement that has one."""
-    tried = asked.reach(_SHARES)
+    tried = requested.reach(_SHARES)
     count = int(np.argmin(np.append(tried.converged, False)))
     if not count:
         return "no equilibrium found, not even at 1/16 of the displacement", "Check the fixed coordinates for a contradiction"
     share, most = _SHARES[count - 1], float(np.max(strains(tried).largest[count - 1], initial=0.0))
-    units = [WRENCH.unit(name.rpartition(".")[2]) for name in asked.coordinates]
+    units = [WRENCH.unit(name.rpartition(".")[2]) for name in requested.coordinates]
     force = ", ".join(f"{each:.4g} {unit}" for each, unit in zip(tried.reactions[count - 1], units, strict=True))
-    reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in asked.at.items())
+    reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in requested.at.items())
     what = f"no equilibrium found; the last one is at {share:.0%} of the displacement ({reached})"
     return (
         f"{what}{f', held by a force of {force}' if force else ''}, with a largest strain of {most:.2%}",
@@ -207,47 +209,47 @@ def _how_far(asked: Conditions) -> tuple[str, str]:
     )
 
 
-def _require_stable(asked: Conditions, state: State) -> None:
+def _require_stable(requested: Conditions, state: State) -> None:
     """Refuse an operating point that is unstable after release."""
-    count = int(unstable_motions(state, locked=asked.fixed))
+    count = int(unstable_motions(state, locked=requested.fixed))
     if count > 0:
         most = float(np.max(strains(state).largest, initial=0.0))
         ways = f"{count} unstable mode{'s' if count > 1 else ''}"
-        loose = [name for name in asked.coordinates if name not in asked.fixed]
+        loose = [name for name in requested.coordinates if name not in requested.fixed]
         under = (
             "the released stage is unstable under the force that displaces it"
             if loose
             else "the stage is unstable under its weight, loads or strokes"
         )
-        what = f"{under} ({ways}, largest strain {most:.2%}){_stable_until(asked)}"
+        what = f"{under} ({ways}, largest strain {most:.2%}){_stable_until(requested)}"
         lock = f"Fix it: --fixed {loose[0]}, or run" if loose else "Run"
         raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle to find the buckling mode")
 
 
-def _stable_until(asked: Conditions) -> str:
+def _stable_until(requested: Conditions) -> str:
     """Largest share, in sixteenths, of loads and displacements at which the stage is stable."""
-    rest = equilibrium(asked.model, {name: _SHARES * value for name, value in asked.loads.items()})
-    states = asked.reach(_SHARES) if asked.at else rest
-    stays = unstable_motions(states, locked=asked.fixed) == 0
+    rest = equilibrium(requested.model, {name: _SHARES * value for name, value in requested.loads.items()})
+    states = requested.reach(_SHARES) if requested.at else rest
+    stays = unstable_motions(states, locked=requested.fixed) == 0
     count = int(np.argmin(np.append(stays, False)))
     return f"; it is stable up to {_SHARES[count - 1]:.0%} of the loads and displacements" if count else ""
 
 
-def _held(asked: Conditions, state: State) -> Matrix | None:
-    if not asked.coordinates:
+def _held(requested: Conditions, state: State) -> Matrix | None:
+    if not requested.coordinates:
         return None
-    places = [COMPONENTS.index(name.rpartition(".")[2]) for name in asked.coordinates]
-    values = [asked.at.get(name, 0.0) for name in asked.coordinates]
+    places = [COMPONENTS.index(name.rpartition(".")[2]) for name in requested.coordinates]
+    values = [requested.at.get(name, 0.0) for name in requested.coordinates]
     units = tuple((TWIST_UNITS[place], WRENCH_UNITS[place]) for place in places)
-    return Matrix(np.stack([values, state.reactions], axis=-1), asked.coordinates, ("value", "force"), units)
+    return Matrix(np.stack([values, state.reactions], axis=-1), requested.coordinates, ("value", "force"), units)
 
 
-def _idle(asked: Conditions, state: State) -> Iterator[Finding]:
+def _idle(requested: Conditions, state: State) -> Iterator[Finding]:
     """Drives and loads without effect."""
-    for name, value in {**asked.loads, **asked.driven}.items():
-        if value == 0.0 and name not in asked.coordinates:
+    for name, value in {**requested.loads, **requested.driven}.items():
+        if value == 0.0 and name not in requested.coordinates:
             yield Finding(name, "zero has no effect", "Use another value, or remove it")
-    moved = np.abs(state.pose.position - asked.rest.pose.position) / asked.model.size
-    turned = np.abs(state.pose.turn - asked.rest.pose.turn)
-    if any(asked.driven.values()) and max(np.max(moved), np.max(turned)) < _STILL:
-        yield Finding(", ".join(asked.driven), "no effect on the stage", "Check the connections of its ends")
+    moved = np.abs(state.pose.position - requested.rest.pose.position) / requested.model.size
+    turned = np.abs(state.pose.turn - requested.rest.pose.turn)
+    if any(requested.driven.values()) and max(np.max(moved), np.max(turned)) < _STILL:
+        yield Finding(", ".join(requested.driven), "no effect on the stage", "Check the connections of its ends")

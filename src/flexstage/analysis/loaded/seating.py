@@ -60,12 +60,12 @@ def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
     motion = displacement(model, load[..., None])
     forces = np.real(model.seen(model.output_index(rows), motion)[..., 0])
     wrenches = forces.reshape(*forces.shape[:-1], len(links), 6)
-    found: dict[str, Seating] = {}
+    result: dict[str, Seating] = {}
     for index, (name, link) in enumerate(links.items()):
         assert isinstance(link.part, Contact)  # noqa: S101  as asked above
         assert link.material is not None  # noqa: S101  a contact has one
-        found[name] = seated(link.part, link.material, wrenches[..., index, :])
-    return found
+        result[name] = seated(link.part, link.material, wrenches[..., index, :])
+    return result
 
 
 def seated(part: Contact, material: Material, wrench: Array) -> Seating:

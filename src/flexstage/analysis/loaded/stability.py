@@ -395,13 +395,13 @@ def _weights(mechanism: Mechanism) -> _Loads:
 def _by_part(links: Iterable[PlacedLink], work: Callable[[Part, Material | None], _Of]) -> list[_Of]:
     """Value of a function for every link, computed once for each part and material."""
     known: dict[tuple[int, int], _Of] = {}
-    found: list[_Of] = []
+    results: list[_Of] = []
     for link in links:
         key = id(link.part), id(link.material)
         if key not in known:
             known[key] = work(link.part, link.material)
-        found.append(known[key])
-    return found
+        results.append(known[key])
+    return results
 
 
 def _force(force: Array) -> Array:
@@ -491,10 +491,10 @@ def _worst(softest: Callable[[Any], Any], stiffness: Any, parts: Sequence[Any], 
     and its modes added, until that corner is already solved.
     """
     weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
-    wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
+    target = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
     space, solved = np.zeros((stiffness.shape[-1], 0)), dict[int, Array]()
     while True:
-        for corner in dict.fromkeys(wanted):
+        for corner in dict.fromkeys(target):
             solved[corner] = softest(_combined(parts, corners[corner]))[1][:, :_KEPT]
             space = _orthonormal(stiffness, np.concatenate([space, solved[corner]], axis=-1))
         small = np.array([space.T @ (part @ space) for part in parts])
@@ -502,7 +502,7 @@ def _worst(softest: Callable[[Any], Any], stiffness: Any, parts: Sequence[Any], 
         least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
         if least in solved:
             return corners[least], solved[least][:, 0]
-        wanted = [least]
+        target = [least]
 
 
 def _orthonormal(stiffness: Any, shapes: Array) -> Array:

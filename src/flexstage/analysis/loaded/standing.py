@@ -26,9 +26,9 @@ def standing(mechanism: Mechanism) -> LinearModel:
     >>> len(standing(parallelogram()).coordinates)
     18
     """
-    model, found = _under_load(mechanism)
-    if found is not None:
-        require(found.refusals)
+    model, result = _under_load(mechanism)
+    if result is not None:
+        require(result.refusals)
     return model
 
 
@@ -74,11 +74,11 @@ def require_standing(mechanism: Mechanism) -> None:
     >>> require_standing(parallelogram())
     """
     try:
-        found = _under_load(mechanism)[1]
+        result = _under_load(mechanism)[1]
     except DesignError:
         return
-    if found is not None:
-        require(found.refusals)
+    if result is not None:
+        require(result.refusals)
 
 
 @SESSION.keep(2)

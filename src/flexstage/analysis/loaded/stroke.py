@@ -75,8 +75,8 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = stroke(load_path(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4])))
-    >>> found.along.columns[:4]
+    >>> result = stroke(load_path(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4])))
+    >>> result.along.columns[:4]
     ('platform.x', 'force', 'stiffness', 'platform.y')
     """
     points = Points(path.drive, path.values, path.state, path.locked, rest, kinematics)
@@ -189,20 +189,20 @@ def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
     return np.where(known[..., 0, 0], 1.0 / compliance, np.nan)
 
 
-def _warnings(found: Stroke) -> Iterator[Finding]:
-    yield from strain_warnings(found.strained)
-    lost = np.isnan(found.along.values[:, -2])
+def _warnings(result: Stroke) -> Iterator[Finding]:
+    yield from strain_warnings(result.strained)
+    lost = np.isnan(result.along.values[:, -2])
     if lost.any():
-        what = f"no equilibrium found at {int(lost.sum())} of {len(lost)} points, the first at {_first(found, lost)}"
-        yield Finding(found.drive, what, "Reduce the stroke, or use arc-length continuation (fs.continuation)")
-    loose = found.along.values[:, -1] > 0
+        what = f"no equilibrium found at {int(lost.sum())} of {len(lost)} points, the first at {_first(result, lost)}"
+        yield Finding(result.drive, what, "Reduce the stroke, or use arc-length continuation (fs.continuation)")
+    loose = result.along.values[:, -1] > 0
     if loose.any():
-        what = f"the free stage is unstable at {int(loose.sum())} of {len(loose)} points, the first at {_first(found, loose)}"
-        yield Finding(found.drive, what, "Run flexstage buckle to find the buckling mode")
+        what = f"the free stage is unstable at {int(loose.sum())} of {len(loose)} points, the first at {_first(result, loose)}"
+        yield Finding(result.drive, what, "Run flexstage buckle to find the buckling mode")
 
 
-def _first(found: Stroke, points: Array) -> str:
+def _first(result: Stroke, points: Array) -> str:
     """Value of the drive at the first of the marked points."""
-    along = found.along
+    along = result.along
     unit = along.unit if isinstance(along.unit, str) else along.unit[0][0]
     return show(float(along.values[points, 0][0]), LENGTH if unit == "m" else quantity_of_unit(unit), digits=4)

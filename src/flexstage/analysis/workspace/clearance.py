@@ -109,12 +109,12 @@ def clearance(mechanism: Mechanism) -> Clearance:
     >>> clearance(double_triangle()).size[2].round(6).item()
     0.112697
     """
-    found = outlines(expand(mechanism))
+    result = outlines(expand(mechanism))
     envelope = None if mechanism.envelope is None else stack(mechanism.envelope)
     opening = None if mechanism.opening is None else stack(mechanism.opening.size)
-    low, high, extreme = bounds(found)
+    low, high, extreme = bounds(result)
     return Clearance(
-        intrusions=() if opening is None else tuple(_intrusions(found, opening)),
+        intrusions=() if opening is None else tuple(_intrusions(result, opening)),
         low=low,
         high=high,
         envelope=envelope,
@@ -145,8 +145,8 @@ def _first(values: Array) -> Array:
     return values.reshape(-1, values.shape[-1])[0]
 
 
-def _intrusions(found: tuple[Outline, ...], opening: Array) -> Iterator[Intrusion]:
-    for outline in found:
+def _intrusions(result: tuple[Outline, ...], opening: Array) -> Iterator[Intrusion]:
+    for outline in result:
         depth = np.where(_surrounds(outline, opening), -np.inf, _depth(outline, opening))
         if np.any(depth > _TOUCHING):
             yield Intrusion(outline.name, depth)

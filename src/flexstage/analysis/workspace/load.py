@@ -191,14 +191,14 @@ def preload_pairs(assembly: Assembly) -> dict[str, tuple[Force, Force]]:
     >>> preload_pairs(expand(double_triangle()))
     {}
     """
-    found: dict[str, tuple[Force, Force]] = {}
+    result: dict[str, tuple[Force, Force]] = {}
     for name, link in assembly.links.items():
         push = push_of(link.part)
         if push is not None:
             at, along = (tuple(np.moveaxis(each, -1, 0)) for each in (link.frame.position, link.frame.rotation[..., :, 0]))
             first, second = (Force(body, at, _times(sign * push, along)) for body, sign in zip(link.joins, (-1.0, 1.0), strict=True))
-            found[name] = first, second
-    return found
+            result[name] = first, second
+    return result
 
 
 def _times(factor: Number, direction: Vector) -> Vector:

@@ -52,9 +52,9 @@ class MapError(Result):
     @property
     def errors_and_strokes(self) -> Annotated[Matrix, INNER]:
         """Worst errors and strokes; no strokes for rounding errors."""
-        found = self.table
-        rounding = (np.arange(found.values.shape[-1]) > 0) & (self.worst[..., None] == 0.0)
-        return replace(found, values=np.where(rounding, np.nan, found.values))
+        result = self.table
+        rounding = (np.arange(result.values.shape[-1]) > 0) & (self.worst[..., None] == 0.0)
+        return replace(result, values=np.where(rounding, np.nan, result.values))
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -159,10 +159,10 @@ def _radical_inverse(numbers: Array, base: int) -> Array:
 
 
 def _primes(count: int) -> list[int]:
-    found: list[int] = []
+    results: list[int] = []
     number = 2
-    while len(found) < count:
-        if all(number % prime for prime in found):
-            found.append(number)
+    while len(results) < count:
+        if all(number % prime for prime in results):
+            results.append(number)
         number += 1
-    return found
+    return results

@@ -107,10 +107,10 @@ def _crossings(normals: Array, offsets: Array) -> Array:
     regular = np.abs(np.linalg.det(square / scale)) > _TOLERANCE
     points = np.linalg.solve(square[regular], offsets[picked][regular][..., None])[..., 0]
     inside = np.all(points @ normals.T <= offsets + _TOLERANCE * np.abs(offsets), axis=-1)
-    found = points[inside]
-    size_of = np.max(np.abs(found), axis=0)
-    _, first = np.unique(np.round(found / size_of, 8) + 0.0, axis=0, return_index=True)
-    return found[np.sort(first)]
+    result = points[inside]
+    size_of = np.max(np.abs(result), axis=0)
+    _, first = np.unique(np.round(result / size_of, 8) + 0.0, axis=0, return_index=True)
+    return result[np.sort(first)]
 
 
 def _hull_volume(vertices: Array) -> float:

@@ -143,8 +143,8 @@ def second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[
     """
     if not command or not kinematics.coordinates:
         return None
-    found = small_motion(mechanism, kinematics).second_order(command)
-    return replace(found, held_twice=bool(kinematics.redundant)) if found.error else None
+    result = small_motion(mechanism, kinematics).second_order(command)
+    return replace(result, held_twice=bool(kinematics.redundant)) if result.error else None
 
 
 def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:

@@ -26,7 +26,7 @@ from flexstage.parts.part import Part, Restricted
 from flexstage.parts.profile import single
 from flexstage.spatial.frame import COMPONENTS, MOTION
 
-FROM_ZERO = "of all strokes from no voltage"
+FROM_ZERO = "of all strokes from zero voltage"
 
 
 class HingeStress(Result):
@@ -115,8 +115,8 @@ def hinge_stress(
     """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
     `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (the bias also bends its hinges), or
-    `stroke_limits(mechanism)` for a stage that is stress-free at its bias; those of coordinates with a `command`, whose inputs reach them.
-    `condition` states these limits. Linear beam theory, section maxima added (see `beams.stress`).
+    `stroke_limits(mechanism)` for a stage that is stress-free at its bias; for coordinates with a `command`, the limits of the coordinates.
+    `condition` describes these limits. Linear beam theory, section maxima added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -157,14 +157,14 @@ def _input_unit(model: LinearModel, name: str) -> str:
 def _places(links: Mapping[str, PlacedLink], wrenches: Array) -> Iterator[str]:
     """End and faces of the largest stress of links under their wrenches (L, 6); the body of an end without the name of its instance."""
     groups: dict[int, list[int]] = {}
-    found: dict[int, tuple[int, int]] = {}
+    result: dict[int, tuple[int, int]] = {}
     for index, link in enumerate(links.values()):
         groups.setdefault(id(link.part), []).append(index)
     for members in groups.values():
         first = list(links.values())[members[0]]
-        found |= dict(zip(members, zip(*stressed_place(_real(first.part), first.material, wrenches[members]), strict=True), strict=True))
+        result |= dict(zip(members, zip(*stressed_place(_real(first.part), first.material, wrenches[members]), strict=True), strict=True))
     for index, (name, link) in enumerate(links.items()):
-        end, face = found[index]
+        end, face = result[index]
         instance = f"{name.rpartition('/')[0]}/"
         side = "middle" if end == 0 else f"{link.joins[int(end > 0)].removeprefix(instance)} end"
         yield f"{side}, {FACES[face]}"
@@ -222,9 +222,9 @@ def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]
 
 def _stress(part: Part, link: PlacedLink, wrenches: Array) -> tuple[Array, Array]:
     """Nominal and peak stress of a part under wrenches (..., 6)."""
-    found = stress(part, link.material, wrenches)
-    assert found is not None  # noqa: S101  _has_section has asked
-    return found.nominal, np.broadcast_to(found.peak, found.nominal.shape)
+    result = stress(part, link.material, wrenches)
+    assert result is not None  # noqa: S101  _has_section has asked
+    return result.nominal, np.broadcast_to(result.peak, result.nominal.shape)
 
 
 def _limit(link: PlacedLink, name: str, peak: Array) -> Array:

@@ -92,21 +92,21 @@ def workspace(
     """
     attempt, limits, mapping = Attempts(() if whole else _FURTHER), stroke_limits(mechanism), kinematics.mapping
     single = single_strokes(mechanism, kinematics)
-    asked = _symmetric(single) if command is None else command
+    requested = _symmetric(single) if command is None else command
     hinged = model if model is not None and set(expand(mechanism).links) <= set(model.stiffness) else None
     unloaded, stopped = limits.from_zero, partial(with_stops, mechanism, kinematics, limits=limits)
     return Workspace(
-        command=Table(asked),
+        command=Table(requested),
         limits=limits,
         single_axis=single,
         corrected=attempt.of_ground(
             "corrected", lost, _RIGID, lambda known: single_axis(*stopped(known.correction), provenance=known.provenance)
         ),
-        worst_case=attempt.of("worst_case", lambda: utilisation(*stopped(mapping), asked, provenance=kinematics.provenance)),
+        worst_case=attempt.of("worst_case", lambda: utilisation(*stopped(mapping), requested, provenance=kinematics.provenance)),
         polytope=attempt.of("polytope", lambda: reachable(*stopped(mapping), provenance=kinematics.provenance)),
         drive=attempt.of("drive", lambda: drive(mechanism)),
         map_error=attempt.of("map_error", lambda: linear_map_error(mechanism, kinematics, limits)),
-        gauges=attempt.of("gauges", lambda: gauge_range(mechanism, kinematics, asked)),
+        gauges=attempt.of("gauges", lambda: gauge_range(mechanism, kinematics, requested)),
         resolution=attempt.of("resolution", lambda: pose_resolution(mechanism, kinematics)),
         clearance=attempt.of("clearance", lambda: clearance(mechanism)),
         platform_lines=attempt.of_ground("platform_lines", model, _RIGID, lambda known: platform_lines(mapping, known, limits)),

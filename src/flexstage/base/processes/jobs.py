@@ -253,10 +253,10 @@ def main() -> None:
     """Serve calls from standard input; output of libraries goes to standard error."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     faulthandler.enable()
-    asked: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-    line = Line(asked, os.fdopen(os.dup(1), "wb"))
+    requested: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    line = Line(requested, os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)
-    threading.Thread(target=_listen, args=(asked,), daemon=True).start()
+    threading.Thread(target=_listen, args=(requested,), daemon=True).start()
     try:
         _serve(line)
     except BaseException:  # noqa: BLE001 (whatever it is, this process is lost)
@@ -273,11 +273,11 @@ def _serve(line: Line) -> None:
             line.say(Word.FAILED, error)
 
 
-def _listen(asked: queue.SimpleQueue[bytes]) -> None:
+def _listen(requested: queue.SimpleQueue[bytes]) -> None:
     """Forward messages until standard input closes; then end this process."""
     with contextlib.suppress(EOFError):
         while True:
-            asked.put(_read_frame(sys.stdin.buffer))
+            requested.put(_read_frame(sys.stdin.buffer))
     os._exit(0)
 
 
@@ -286,10 +286,10 @@ def _read_frame(stream: IO[bytes]) -> bytes:
 
 
 def _read_exactly(stream: IO[bytes], size: int) -> bytes:
-    found = stream.read(size)
-    if len(found) < size:
+    result = stream.read(size)
+    if len(result) < size:
         raise EOFError
-    return found
+    return result
 
 
 def _write(stream: IO[bytes], data: bytes) -> None:

@@ -86,13 +86,13 @@ def kernel_lanes() -> Lanes:
     >>> kernel_lanes() in processor_lanes()
     True
     """
-    found, stated = {each.name: each for each in processor_lanes()}, os.environ.get(SWITCH, "")
-    if stated and stated not in found:
+    result, stated = {each.name: each for each in processor_lanes()}, os.environ.get(SWITCH, "")
+    if stated and stated not in result:
         from flexstage.base.finding import refuse  # requires more than the standard library
 
-        what = f"it is {stated}, and kernels run here with {', '.join(found)}, or are off"
+        what = f"it is {stated}, and kernels run here with {', '.join(result)}, or are off"
         raise refuse(SWITCH, what, "State one of these, or nothing for the fastest")
-    return found[stated] if stated else next(iter(found.values()))
+    return result[stated] if stated else next(iter(result.values()))
 
 
 def kernel_library(source: Path) -> ctypes.CDLL | None:

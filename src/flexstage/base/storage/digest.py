@@ -66,11 +66,11 @@ def keep(function: Callable[P, T]) -> Callable[P, T]:
     @SESSION.keep(_MANY)
     @functools.wraps(function)
     def known(*args: P.args, **kwargs: P.kwargs) -> T:
-        found = function(*args, **kwargs)
-        for each in found if isinstance(found, tuple) else (found,):
+        result = function(*args, **kwargs)
+        for each in result if isinstance(result, tuple) else (result,):
             if isinstance(each, np.ndarray):
                 each.setflags(write=False)
-        return found
+        return result
 
     @functools.wraps(function)
     def call(*args: P.args, **kwargs: P.kwargs) -> T:

@@ -80,6 +80,6 @@ def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
 def _record(value: Any, where: str, reasons: dict[str, str]) -> Any:
     if hasattr(value, "to_json"):
         return _plain(value.to_json(), where, reasons)
-    found = walk(value)
-    reasons |= {f"{where}.{key}": reason for key, reason in found.pop("reasons", {}).items()}
-    return _plain(found, where, reasons)
+    result = walk(value)
+    reasons |= {f"{where}.{key}": reason for key, reason in result.pop("reasons", {}).items()}
+    return _plain(result, where, reasons)

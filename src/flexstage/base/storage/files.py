@@ -112,8 +112,8 @@ def hdf(path: Path) -> Hdf:
     ...     with h5py.File(Path(folder) / "a.h5", "w") as file:
     ...         file["test/u"] = [1.0, 2.0]
     ...         file["test"].attrs["fs"] = 50.0
-    ...     found = hdf(Path(folder) / "a.h5")
-    ...     dict(found.groups["test"]), found.read("test/u", [(1, 2)]).tolist()
+    ...     result = hdf(Path(folder) / "a.h5")
+    ...     dict(result.groups["test"]), result.read("test/u", [(1, 2)]).tolist()
     ({'fs': 50.0}, [2.0])
     """
     require_regular(path)
@@ -211,11 +211,11 @@ CHILD = Child()
 atexit.register(CHILD.end)
 
 
-def _ask(read: Callable[..., Any], asked: Path, size: int, *arguments: Any) -> Any:
+def _ask(read: Callable[..., Any], requested: Path, size: int, *arguments: Any) -> Any:
     """Answer of the worker about a file, at most `size` bytes of numbers; raises `DesignError` if unreadable."""
-    path, seconds = str(asked), PATIENCE + _SLOW * size
+    path, seconds = str(requested), PATIENCE + _SLOW * size
     try:
-        answer = CHILD.ask(read, asked.absolute(), arguments, seconds, MEMORY + _COPIES * size)
+        answer = CHILD.ask(read, requested.absolute(), arguments, seconds, MEMORY + _COPIES * size)
     except EOFError:
         raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it again") from None
     if isinstance(answer, _WrongError):
@@ -283,7 +283,7 @@ def _look(path: Path) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArr
     """All groups and arrays of a file, without repetition."""
     with _open(path) as file:
         groups: dict[str, dict[str, Attribute]] = {}
-        found: dict[str, HdfArray] = {}
+        result: dict[str, HdfArray] = {}
         waiting, seen = [("", file)], set[Any]()
         while waiting:
             name, thing = waiting.pop()
@@ -292,11 +292,11 @@ def _look(path: Path) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArr
             seen.add(thing.id)
             if hasattr(thing, "external"):  # committed types have a dtype and no data
                 if thing.shape is not None and (array := _array(file, name, thing)).kind:
-                    found[name] = array
+                    result[name] = array
             elif hasattr(thing, "keys"):
                 groups[name] = _attributes(thing)
                 waiting += reversed([(f"{name}/{key}".lstrip("/"), each) for key, each in _members(name, thing)])
-        return groups, found
+        return groups, result
 
 
 def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:

@@ -52,8 +52,8 @@ def parts(result: Any) -> Iterator[_Part]:
     """Return the parts of a result or a document by path.
 
     >>> from flexstage.base.labelled import Matrix
-    >>> found = dict(parts({"gain": 2.0, "modes": [{"frequency_hz": 100.0}, {"frequency_hz": 200.0}]}))
-    >>> found["modes"].heads
+    >>> result = dict(parts({"gain": 2.0, "modes": [{"frequency_hz": 100.0}, {"frequency_hz": 200.0}]}))
+    >>> result["modes"].heads
     {'mode': (1, 2), 'frequency_hz': (100.0, 200.0)}
     """
     taken = Counter[str]()
@@ -138,10 +138,10 @@ def _inner(path: str, field: Field, heads: tuple[str, ...], rows: Sequence[_Row]
 
 
 def _sorted(rows: Iterable[_Row], *, entries: bool) -> Iterable[tuple[_Sort, list[_Row]]]:
-    found: dict[_Sort, list[_Row]] = {}
+    result: dict[_Sort, list[_Row]] = {}
     for row in rows:
-        found.setdefault(_sort(row[-1], entry=entries), []).append(row)
-    return found.items()
+        result.setdefault(_sort(row[-1], entry=entries), []).append(row)
+    return result.items()
 
 
 def _sort(value: Any, *, entry: bool) -> _Sort:
@@ -162,16 +162,16 @@ def _name_rows(heads: Iterable[str], rows: Sequence[tuple[Any, ...]]) -> dict[st
 def _rows_along(names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet]]:
     """A sheet for arrays along equal axes, with a row for each combination of names."""
     for axes in dict.fromkeys(field.axes for record in records for field in record if field.axes):
-        rows, found = list[tuple[Any, ...]](), list[Record]()
+        rows, results = list[tuple[Any, ...]](), list[Record]()
         heads = tuple(_head(records[0], name) for name in axes)
         for index, record in enumerate(records):
             ends = [next(value for field, value in record.items() if field.name == name) for name in axes]
             own = {field: value for field, value in record.items() if field.axes == axes and value is not None}
             for place in product(*(range(len(end)) for end in ends)) if own else ():
                 rows.append((*(each[index] for each in names.values()), *(end[at] for end, at in zip(ends, place, strict=True))))
-                found.append({field: _entry(value, place) for field, value in own.items()})
-        if found:
-            columns = _columns(found)
+                results.append({field: _entry(value, place) for field, value in own.items()})
+        if results:
+            columns = _columns(results)
             named = columns if len(axes) > 1 else [field for field in records[0] if field.name in axes]
             yield "_".join(each.key for each in named), Sheet(_name_rows((*names, *heads), rows), columns)
 

@@ -80,10 +80,10 @@ class Expression:
 def _named(name: str, scope: Scope) -> Amount:
     if name not in scope:
         raise ExpressionError(f'unknown number "{name}"', _name_advice(name, scope))
-    found = scope[name]
-    if found is None:
+    result = scope[name]
+    if result is None:
         raise UnknownAmountError(name)
-    return found
+    return result
 
 
 def _literal(amount: Amount, unit: str, scope: Scope) -> Amount:
@@ -94,8 +94,8 @@ def _literal(amount: Amount, unit: str, scope: Scope) -> Amount:
 
 
 def _negative(inner: Expression, scope: Scope) -> Amount:
-    found = inner.amount(scope)
-    return Amount(-found.value, found.dimension)
+    result = inner.amount(scope)
+    return Amount(-result.value, result.dimension)
 
 
 _VALUES: Mapping[str, Callable[[Any, Any], Any]] = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
@@ -104,7 +104,7 @@ _VALUES: Mapping[str, Callable[[Any, Any], Any]] = {"+": operator.add, "-": oper
 def _pair(sign: str, first: Expression, second: Expression, text: str, scope: Scope) -> Amount:
     left, right = first.amount(scope), second.amount(scope)
     if sign == "/" and np.any(np.equal(right.value, 0.0)):
-        raise ExpressionError(f'"{text}" divides by nothing: what stands below is 0', "Check the number that is 0")
+        raise ExpressionError(f'"{text}" divides by 0', "Check the number that is 0")
     value = _VALUES[sign](left.value, right.value)
     if sign in "*/":
         return Amount(value, left.dimension.times(right.dimension, Fraction(1 if sign == "*" else -1)))
@@ -152,10 +152,10 @@ def evaluate(expression: Expression, scope: Scope) -> Amount:
     0.014
     """
     with np.errstate(all="ignore"):
-        found = expression.amount(scope)
-    if not np.all(np.isfinite(found.value)):
+        result = expression.amount(scope)
+    if not np.all(np.isfinite(result.value)):
         raise ExpressionError("its value is not finite", "Check the numbers it is made of")
-    return found
+    return result
 
 
 def is_plain(text: str) -> bool:
@@ -174,10 +174,10 @@ class _Parser:
         self.text, self.at, self.depth = text, 0, 0
 
     def whole(self) -> Expression:
-        found = self.sum()
+        result = self.sum()
         if self.at < len(self.text):
             raise self.unexpected()
-        return found
+        return result
 
     def sum(self) -> Expression:
         return self.chain("+-", self.product)
@@ -218,18 +218,18 @@ class _Parser:
         return Expression(frozenset([name]), partial(_named, name))
 
     def inside(self) -> Expression:
-        found = self.deeper(self.sum)
+        result = self.deeper(self.sum)
         if not self.sign(")"):
             raise self.unexpected()
-        return found
+        return result
 
     def deeper(self, inner: Callable[[], Expression]) -> Expression:
         self.depth += 1
         if self.depth > DEEPEST:
             raise ExpressionError(f"it nests deeper than {DEEPEST} levels", "Give parts of it names of their own")
-        found = inner()
+        result = inner()
         self.depth -= 1
-        return found
+        return result
 
     def sign(self, signs: str) -> str:
         """Next sign, if it is one of these."""
@@ -238,11 +238,11 @@ class _Parser:
     def match(self, pattern: re.Pattern[str]) -> str | None:
         """Next token after blanks, if it matches."""
         blank = len(self.text) - len(self.text[self.at :].lstrip())
-        found = pattern.match(self.text, blank)
-        if found is None:
+        result = pattern.match(self.text, blank)
+        if result is None:
             return None
-        self.at = found.end()
-        return found[0]
+        self.at = result.end()
+        return result[0]
 
     def unexpected(self) -> ExpressionError:
         """Error of an unexpected token."""
@@ -253,7 +253,7 @@ class _Parser:
         after = f'after "{before}"' if before else "at its beginning"
         if name and before:
             advice = f"A named number is multiplied with *: {before[-20:]}*{name[0]}"
-            return ExpressionError(f'"{name[0]}" {after} is no known unit, and no sign stands between', advice)
+            return ExpressionError(f'"{name[0]}" {after} is an unknown unit, without an operator', advice)
         if rest[0] == "^":
             return ExpressionError(f'found "^" {after}', "Powers are written as products, arm*arm, and roots as sqrt(arm)")
         if rest[0] == ",":

@@ -121,10 +121,10 @@ def quantity_of_dimension(dimension: Dimension, unit: str = "") -> Quantity:
 @functools.lru_cache(maxsize=512)
 def _quantity(powers: tuple[tuple[str, Fraction], ...], unit: str) -> Quantity:
     known = (each for each in vars(quantities).values() if isinstance(each, Quantity) and each.si != "mixed")
-    found = next((each for each in known if dimension_of(each.si).powers == powers), None)
+    result = next((each for each in known if dimension_of(each.si).powers == powers), None)
     si = _si_text(powers)
-    found = found or Quantity(f"quantity in {si}", si, si, f"1 {si}")
-    return found if unit in ("", found.shown) else replace(found, shown=unit, example=f"1 {unit}")
+    result = result or Quantity(f"quantity in {si}", si, si, f"1 {si}")
+    return result if unit in ("", result.shown) else replace(result, shown=unit, example=f"1 {unit}")
 
 
 def quantity_of_unit(unit: str) -> Quantity:
@@ -179,7 +179,7 @@ def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
 
 
 def example(quantity: Quantity) -> str:
-    """An example of a quantity as it is typed: a ratio without quotes.
+    """Return an example of a quantity for input: a ratio without quotes.
 
     >>> example(RATIO)
     '0.3'

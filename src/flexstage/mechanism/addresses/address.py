@@ -189,11 +189,11 @@ def addresses(mechanism: Mechanism) -> tuple[str, ...]:
     >>> addresses(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))[:2]
     ('parts.wire.length', 'parts.wire.diameter')
     """
-    found = [address for address, _, _ in node_of(Mechanism).numbers(mechanism)]
+    results = [address for address, _, _ in node_of(Mechanism).numbers(mechanism)]
     for key, value in mechanism.overrides.items():
         place = locate(mechanism, key)
-        found += [address for address, _, _ in place.node.numbers(value, place.address)]
-    return tuple(dict.fromkeys(found))
+        results += [address for address, _, _ in place.node.numbers(value, place.address)]
+    return tuple(dict.fromkeys(results))
 
 
 def quantity_of(mechanism: Mechanism, address: str) -> Quantity:

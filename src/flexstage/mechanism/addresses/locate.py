@@ -145,7 +145,7 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
         if isinstance(value, Link) and not has_member(value, step):
             return _in_link(mechanism, address, path, _owners(path), steps[number:])
         if isinstance(value, NamedNumber):
-            raise refuse(address, f'unknown name "{step}": {steps[number - 1]} is one number', "Address the number itself")
+            raise refuse(address, f'unknown name "{step}": {steps[number - 1]} is a number', "Use the address of the number")
         for name in _complete(value, address, node, step, last=number == len(steps) - 1):
             node, value = node.child(value, name), member(value, name)
             path += (name,)
@@ -164,13 +164,13 @@ def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) ->
     if isinstance(value, tuple):
         return (_component(value, address, node, step),)
     step = node.field_called(value, step)
-    found = [path for path in completions(value, step) if path[0] not in _DOCUMENT and (last or path[:-1] != (NUMBERS,))]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        raise refuse(address, f'ambiguous name "{step}" (got {" or ".join(".".join(path) for path in found)})', "Use the full address")
+    results = [path for path in completions(value, step) if path[0] not in _DOCUMENT and (last or path[:-1] != (NUMBERS,))]
+    if len(results) == 1:
+        return results[0]
+    if results:
+        raise refuse(address, f'ambiguous name "{step}" (got {" or ".join(".".join(path) for path in results)})', "Use the full address")
     if value is None:
-        raise refuse(address, f'unknown name "{step}": what holds it is not given', "Give it first")
+        raise refuse(address, f'unknown name "{step}": its parent is not specified', "Specify the parent first")
     raise refuse(address, f'unknown name "{step}"', suggest_nearest(step, _names(value)))
 
 
@@ -178,7 +178,7 @@ def _component(value: Any, address: str, node: Node, step: str) -> str:
     if isinstance(node, NumbersNode):
         if step.isdecimal() and has_member(value, step):
             return step
-        raise refuse(address, f'unknown number "{step}"', f"They are counted from 0 to {len(value) - 1}")
+        raise refuse(address, f'unknown number "{step}"', f"Use 0 to {len(value) - 1}")
     if not node.components or not has_member(value, step):
         raise refuse(address, f'unknown component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
     return COMPONENTS[int(step)] if step in "012345" else step

@@ -90,12 +90,12 @@ def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
         return ((_field_name(value, name),),)
     if not is_dataclass(value):
         return ()
-    found: list[tuple[str, ...]] = []
+    results: list[tuple[str, ...]] = []
     for own in dict.fromkeys(_field_names(type(value)).values()):
         inner = getattr(value, own)
         if isinstance(inner, Mapping) or is_dataclass(inner):
-            found += [(own, *rest) for rest in completions(inner, name)]
-    return tuple(found)
+            results += [(own, *rest) for rest in completions(inner, name)]
+    return tuple(results)
 
 
 def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
@@ -110,10 +110,10 @@ def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
     """
     if not path:
         return ()
-    found = completions(value, path[0])
-    if len(found) != 1:
+    result = completions(value, path[0])
+    if len(result) != 1:
         raise KeyError(path[0])
-    return found[0] + complete(follow(value, found[0]), path[1:])
+    return result[0] + complete(follow(value, result[0]), path[1:])
 
 
 def replace_member(value: Any, path: tuple[str, ...], new: Any) -> Any:

@@ -55,8 +55,8 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     and stacks without a coefficient, and all bodies of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = expansion(double_triangle(), ground="steel")
-    >>> found.bodies["platform"], found.taken["platform"]
+    >>> result = expansion(double_triangle(), ground="steel")
+    >>> result.bodies["platform"], result.taken["platform"]
     (1.03e-05, 'steel, of its solids')
     """
     assembly = expand(mechanism)
@@ -106,10 +106,10 @@ def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
         return Ground(solids[0], "all its outlines are of it")
     if not solids and len(links) == 1:
         return Ground(links[0], "all links on it are of it")
-    found = f"its outlines are of {', '.join(solids)}" if solids else f"the links on it are of {', '.join(links) or 'no material'}"
+    result = f"its outlines are of {', '.join(solids)}" if solids else f"the links on it are of {', '.join(links) or 'no material'}"
     example = (*solids, *links, *mechanism.materials, "steel")[0]
     advice = f'Specify it in the design: ground = "{example}", or "{NOT_GROWING}" without expansion'
-    raise refuse("ground", f"thermal expansion unknown: {found}", advice)
+    raise refuse("ground", f"thermal expansion unknown: {result}", advice)
 
 
 def coefficient(link: PlacedLink) -> Number:
@@ -136,10 +136,10 @@ def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple
     if solids:
         heaviest = max(solids, key=lambda solid: _weight(mechanism, solids[solid]))
         return solids[heaviest].material, f"of its heaviest solid, {heaviest}"
-    found = _link_materials(mechanism, assembly, name)
-    if len(found) == 1:
-        return found[0], "of its links"
-    return "", f"no solids, and its links are of {', '.join(found) or 'no material'}"
+    result = _link_materials(mechanism, assembly, name)
+    if len(result) == 1:
+        return result[0], "of its links"
+    return "", f"no solids, and its links are of {', '.join(result) or 'no material'}"
 
 
 def _weight(mechanism: Mechanism, solid: Solid) -> float:
@@ -159,13 +159,13 @@ def _distinct(mechanism: Mechanism, names: Iterable[str]) -> list[str]:
 
 
 def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for name, (material, source) in choices.items():
         if not material:
-            found.append(Finding(name, f"thermal expansion unknown: {source}", "Add a solid of its material to the body"))
+            findings.append(Finding(name, f"thermal expansion unknown: {source}", "Add a solid of its material to the body"))
         elif material not in mechanism.materials:
-            found.append(Finding(name, f"unknown material {material}", suggest_nearest(material, mechanism.materials)))
-    return found
+            findings.append(Finding(name, f"unknown material {material}", suggest_nearest(material, mechanism.materials)))
+    return findings
 
 
 def _unstated_findings(mechanism: Mechanism, assembly: Assembly, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:

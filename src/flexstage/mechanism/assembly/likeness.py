@@ -35,11 +35,11 @@ def ancestry(mechanism: Mechanism, name: str) -> tuple[str, ...]:
     >>> ancestry(Mechanism("", units={"outer": Unit({}, {}, like="inner"), "inner": Unit({}, {})}), "outer")
     ('outer', 'inner')
     """
-    found: list[str] = []
-    while name in mechanism.units and name not in found:
-        found.append(name)
+    results: list[str] = []
+    while name in mechanism.units and name not in results:
+        results.append(name)
         name = mechanism.units[name].like or ""
-    return tuple(found)
+    return tuple(results)
 
 
 def link_lineage(mechanism: Mechanism, unit: str, link: str) -> tuple[str, ...]:

@@ -55,5 +55,5 @@ def misalign(frame: Frame, overrides: Mapping[str, Any], copy: str) -> Frame:
     """
     if not any(address.partition(".")[0] == copy for address in overrides):
         return frame
-    found = misalignment_of(overrides, copy)
-    return Frame(np.asarray(frame.rotation) @ exponential(stack(found.rotation)), frame.point(stack(found.shift)), frame.mirrored)
+    result = misalignment_of(overrides, copy)
+    return Frame(np.asarray(frame.rotation) @ exponential(stack(result.rotation)), frame.point(stack(result.shift)), frame.mirrored)

@@ -298,6 +298,6 @@ def _top(stage: Mechanism, carried: Mapping[str, Mount]) -> str | None:
     bearing = {item.on.partition("/")[0] for item in carried.values()}
     top = [name for name in carried if name not in bearing]
     if len(top) != 1:
-        what = f'unknown body "{PLATFORM}", and not one of the stages is on top of all others, but {", ".join(top) or "none"}'
+        what = f'unknown body "{PLATFORM}", and no unique topmost stage (got {", ".join(top) or "none"})'
         raise refuse("stages", what, f"Declare the moving part under bodies.{PLATFORM}")
     return top[0]

@@ -136,7 +136,7 @@ def _place_findings(where: str, key: str, place: Probe | LinkProbe, gauge: Instr
         what = f"link missing for {place.gauge}, a gauge on a link"
         yield Finding(where, what, 'Use e.g. link = "B1/pzt" instead of body and pose')
     elif gauge.gap and place.positive is None:
-        yield Finding(where, "it has no positive", 'Use e.g. positive = "opens"')
+        yield Finding(where, "positive missing", 'Use e.g. positive = "opens"')
     elif not gauge.gap and place.positive is not None:
         what = f"{place.gauge} has no gap that {place.positive.value}; it reads along or about its x axis"
         yield Finding(f"{where}.positive", what, "Remove it; reverse the x axis for the other sign")
@@ -160,7 +160,7 @@ def _sum_findings(where: str, key: str, place: GaugeSum, gauges: Mapping[str, Ga
     if len(copy_names(key)) > 1:
         yield Finding(where, f"a sum is a single gauge (got several in {key})", "Use one table per sum")
     if not place.sum:
-        yield Finding(f"{where}.sum", "it has no members", "Use e.g. sum = { S1 = 0.5, S2 = -0.5 }")
+        yield Finding(f"{where}.sum", "members missing", "Use e.g. sum = { S1 = 0.5, S2 = -0.5 }")
     known = [name for other in gauges for name in copy_names(other) if other != key]
     for name in place.sum:
         if name not in known:

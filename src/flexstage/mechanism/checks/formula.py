@@ -41,16 +41,16 @@ def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for address in expressions:
         try:
             place = locate(mechanism, address)
-            wanted = formula_value(mechanism.formulas[address], quantity_at(place, address), scope, address)
-            found = value_at(mechanism, place)
+            target = formula_value(mechanism.formulas[address], quantity_at(place, address), scope, address)
+            result = value_at(mechanism, place)
         except DesignError as error:
             yield from error.findings
             continue
         number = mechanism.numbers.get(address.removeprefix(PREFIX)) if address.startswith(PREFIX) else None
         if number is not None and number.unit != (unit := shown_unit(amount_of(number))):
             yield Finding(address, f"wrong unit (got {number.unit}, expected {unit} by its formula)", f"Use {unit}")
-        if found is None or not np.allclose(found, wanted, rtol=_ALIKE, atol=0.0):
-            what = f'wrong value (got {_si(found)}, expected {_si(wanted)} in SI by its formula "{mechanism.formulas[address]}")'
+        if result is None or not np.allclose(result, target, rtol=_ALIKE, atol=0.0):
+            what = f'wrong value (got {_si(result)}, expected {_si(target)} in SI by its formula "{mechanism.formulas[address]}")'
             yield Finding(address, what, "Use the value of the formula, or remove the formula")
 
 

@@ -76,8 +76,8 @@ def _lengths(mechanism: Mechanism) -> Iterator[Finding]:
         off = np.abs(apart - np.real(own.span)) > _NEAR
         if np.any(off):
             at, values = first_failing(off, apart, np.asarray(own.span))
-            found, length = (show(value, LENGTH, digits=6) for value in values)
-            what = f"wrong distance of from and to (got {found}, expected the length of part {link.part}, {length})"
+            result, length = (show(value, LENGTH, digits=6) for value in values)
+            what = f"wrong distance of from and to (got {result}, expected the length of part {link.part}, {length})"
             yield Finding(f"{where}{at}", what, "Move an end, or change the part's length")
 
 
@@ -133,8 +133,8 @@ def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
         failing = small >= large if order.strict else small > large * (1.0 + _SLACK)
         if np.any(failing):
             at, values = first_failing(failing, small, large)
-            found, other = (show(value, order.quantity, digits=6) for value in values)
-            what = f"must be {'below' if order.strict else 'at most'} {order.other}, {other} (got {found})"
+            result, other = (show(value, order.quantity, digits=6) for value in values)
+            what = f"must be {'below' if order.strict else 'at most'} {order.other}, {other} (got {result})"
             yield Finding(f"{where}.{order.field}{at}", what, order.advice)
 
 
@@ -211,8 +211,8 @@ def _inertia(where: str, inertia: Inertia) -> Iterator[Finding]:
     failing = lacking | negative
     if np.any(failing):
         at, values = first_failing(failing, *np.moveaxis(principal, -1, 0))
-        told = ", ".join(f"{value:.6g}" for value in values)
-        what = f"invalid principal moments (got {told} kg m^2, expected none negative or above the sum of the other two)"
+        text = ", ".join(f"{value:.6g}" for value in values)
+        what = f"invalid principal moments (got {text} kg m^2, expected none negative or above the sum of the other two)"
         yield Finding(f"{where}{at}", what, "Check the moments and the signs of the products")
 
 

@@ -43,15 +43,15 @@ def package_findings(packages: Iterable[str]) -> Iterator[Finding]:
         from packaging.requirements import InvalidRequirement, Requirement  # takes 0.1 s, and few designs have any
 
         try:
-            wanted = Requirement(text)
+            target = Requirement(text)
         except InvalidRequirement:
             yield Finding("packages", f'invalid package (got "{text}")', 'Use its name, with optional versions, e.g. "tapered-leaf >= 1"')
             continue
         install = f'Install it in the environment of flexstage: pip install "{text}"'
         try:
-            there = version(wanted.name)
+            there = version(target.name)
         except PackageNotFoundError:
             yield Finding("packages", f'"{text}" is not installed', install)
             continue
-        if not wanted.specifier.contains(there, prereleases=True):
-            yield Finding("packages", f'wrong version (got {wanted.name} {there}, expected "{text}")', install)
+        if not target.specifier.contains(there, prereleases=True):
+            yield Finding("packages", f'wrong version (got {target.name} {there}, expected "{text}")', install)

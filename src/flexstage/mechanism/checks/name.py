@@ -67,7 +67,7 @@ def _range_fault(where: str, key: str) -> Finding | None:
     if match is None:
         return None
     if max(len(match[2]), len(match[3])) > 9:
-        return Finding(where, "its numbers have too many digits", "Use e.g. B1-B3")
+        return Finding(where, "numbers with too many digits", "Use e.g. B1-B3")
     first, last = int(match[2]), int(match[3])
     if first > last:
         return Finding(where, f"the first number, {first}, is above the last, {last}", "Use ascending order")

@@ -51,7 +51,7 @@ def _links(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
     if ported:
-        return f'part "{part}" has ports, and the link does not say which way its z axis points', 'Use e.g. bends = "z"'
+        return f'bends (z axis of the link) missing, as part "{part}" has ports', 'Use e.g. bends = "z"'
     what = f'bends missing, as part "{part}" is not axisymmetric'
     return what, 'Use e.g. bends = "y": the axis of its compliant rotation'
 
@@ -103,8 +103,8 @@ def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> 
     angle = np.arccos(np.clip(np.sum(one * two, -1) / lengths, -1.0, 1.0))
     skew = np.abs(angle - 0.5 * np.pi) > _TOLERANCE
     if np.any(skew):
-        at, (found,) = first_failing(skew, angle)
-        what = f"wrong angle to {where.rpartition('.')[2]} (got {np.rad2deg(found):.4g} deg, expected 90 deg)"
+        at, (result,) = first_failing(skew, angle)
+        what = f"wrong angle to {where.rpartition('.')[2]} (got {np.rad2deg(result):.4g} deg, expected 90 deg)"
         yield Finding(f"{other_where}{at}", what, "Use two perpendicular directions")
 
 

@@ -34,8 +34,8 @@ def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
     try:
         np.broadcast_shapes(*shapes)
     except ValueError:
-        told = ", ".join(f"{address} {shape}" for shape, address in shapes.items() if shape)
-        yield Finding("batch", f"arrays of different shapes ({told})", "Use arrays that broadcast")
+        text = ", ".join(f"{address} {shape}" for shape, address in shapes.items() if shape)
+        yield Finding("batch", f"arrays of different shapes ({text})", "Use arrays that broadcast")
 
 
 def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
@@ -69,18 +69,18 @@ def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Findin
     size = np.abs(real)
     extreme = (size > LARGEST) | ((size < 1.0 / LARGEST) & (size > 0.0))
     if np.any(extreme):
-        at, (found,) = first_failing(extreme, real)
-        told = show(found, node.quantity, digits=6)
+        at, (result,) = first_failing(extreme, real)
+        told = show(result, node.quantity, digits=6)
         yield Finding(f"{where}{at}", f"implausible size (got {told})", "Check the exponent and the unit")
         return
     bound = node.bound
     if bound is not None and np.any(outside := _outside(real, bound)):
-        at, (found,) = first_failing(outside, real)
+        at, (result,) = first_failing(outside, real)
         fits = node.quantity is not RATIO or not _outside(parse(RATIO.example, RATIO), bound)
         limits = replace(bound, **{name: float(convert(getattr(bound, name), node.quantity)) for name in ("low", "high")})
         text = limits.text() if node.quantity.shown == "1" else f"{limits.text()} {node.quantity.shown}"
         advice = hint if fits else f"Use a number {text}"
-        yield Finding(f"{where}{at}", f"must be {text} (got {show(found, node.quantity, digits=6)})", advice)
+        yield Finding(f"{where}{at}", f"must be {text} (got {show(result, node.quantity, digits=6)})", advice)
 
 
 def _outside(real: Any, bound: Bound) -> Any:

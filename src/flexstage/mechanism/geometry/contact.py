@@ -93,14 +93,14 @@ class _Thing:
     @cached_property
     def face(self) -> tuple[Array, Array]:
         """Points (n, 3) on a link's end face at its origin, with their shares of the area; rim points first."""
-        end, found = self.end, []
+        end, result = self.end, []
         for piece in end.pieces(_ANGLES):
             low, high = piece.min(axis=0), piece.max(axis=0)
             points, weights = _face(*(0.5 * (high - low)).tolist(), is_round=end.is_axisymmetric)
             points = points + np.array([0.0, *(0.5 * (low + high))])
             inside = within_polygon(points[:, 1:], piece, 0.0)
-            found.append((points[inside], weights[inside] * np.prod(high - low)))
-        points, weights = (np.concatenate(each) for each in zip(*found, strict=True))
+            result.append((points[inside], weights[inside] * np.prod(high - low)))
+        points, weights = (np.concatenate(each) for each in zip(*result, strict=True))
         return points, weights / np.sum(weights)
 
     @property
@@ -124,13 +124,13 @@ def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     assembly = expand(shown)
     things = _things(assembly)
     solids = _by_body(things.values())
-    told = [
+    findings = [
         *_joint_findings(assembly, things, solids),
         *_body_findings(solids),
         *_clash_findings(things),
         *_gauge_findings(assembly, solids),
     ]
-    return (*_alike(told, assembly), *_unseen(things.values()))
+    return (*_alike(findings, assembly), *_unseen(things.values()))
 
 
 @dataclass(frozen=True)
@@ -155,27 +155,27 @@ def gaps(mechanism: Mechanism, within: float) -> tuple[Gap, ...]:
     things = _things(expand(with_drawn_parts(mechanism)))
     seen = [thing for thing in things.values() if not isinstance(thing.form, Imported)]
     drawn_bodies = {thing.bodies[0] for thing in seen if not thing.is_link}
-    found: list[Gap] = []
+    results: list[Gap] = []
     for one, other in near_pairs([thing.outline for thing in seen], within):
         first, second = seen[one], seen[other]
         if not _belong(first, second) and not _meet_in_a_point(first, second, drawn_bodies):
             deep = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])[0]
             apart = -deep if deep > TOUCHING else _gap(first, second)
-            found += [Gap(first.name, second.name, apart)] if apart <= within else []
-    return tuple(found)
+            results += [Gap(first.name, second.name, apart)] if apart <= within else []
+    return tuple(results)
 
 
 def _things(assembly: Assembly) -> dict[str, _Thing]:
-    found = {outline.name: outline for outline in outlines(assembly)}
+    result = {outline.name: outline for outline in outlines(assembly)}
     owned = [(body.name, body.solids) for body in assembly.bodies.values()] + [(GROUND, assembly.ground)]
     things: dict[str, _Thing] = {}
     for body, solids in owned:
         for name, placed in solids.items():
-            things[name] = _Thing(name, placed.solid, _first(placed.frame), (body,), is_link=False, outline=found[name])
+            things[name] = _Thing(name, placed.solid, _first(placed.frame), (body,), is_link=False, outline=result[name])
     for name, link in assembly.links.items():
         form = form_of(link.part)
         if form is not None:
-            things[name] = _Thing(name, form, _first(link.frame), link.joins, is_link=True, outline=found[name])
+            things[name] = _Thing(name, form, _first(link.frame), link.joins, is_link=True, outline=result[name])
     return things
 
 

@@ -62,13 +62,13 @@ def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Nu
     0.006
     """
     try:
-        found = evaluate(parse_expression(text), scope)
+        result = evaluate(parse_expression(text), scope)
     except ExpressionError as error:
         raise refuse(where, error.what, error.advice) from None
-    if found.dimension.powers not in {dimension_of(form).powers for form in (quantity.si, *quantity.also)}:
-        what = f'must be {quantity.noun} (got "{text}", {found.noun()})'
+    if result.dimension.powers not in {dimension_of(form).powers for form in (quantity.si, *quantity.also)}:
+        what = f'must be {quantity.noun} (got "{text}", {result.noun()})'
         raise refuse(where, what, "Check the units of its numbers")
-    return found.value  # type: ignore[no-any-return]
+    return result.value  # type: ignore[no-any-return]
 
 
 def is_formula(text: str, scope: Scope) -> bool:
@@ -80,8 +80,8 @@ def is_formula(text: str, scope: Scope) -> bool:
     try:
         expression = parse_expression(text)
     except ExpressionError:
-        told = set(_WORD.findall(text)) & set(scope)
-        return bool(told or (not is_plain(text) and _SIGN.search(text.strip()[1:])))
+        names = set(_WORD.findall(text)) & set(scope)
+        return bool(names or (not is_plain(text) and _SIGN.search(text.strip()[1:])))
     name = text.strip(" ()")
     if set(expression.names) == {name}:
         return bool(scope) and name.lower() not in _NOT_FINITE
@@ -101,8 +101,8 @@ class Numbers:
 def read_numbers(table: Mapping[str, Any]) -> Numbers:
     """Read the named numbers of a file.
 
-    >>> found = read_numbers({"half": "arm / 2", "arm": "26 mm"})
-    >>> found.values["half"].value, found.formulas
+    >>> result = read_numbers({"half": "arm / 2", "arm": "26 mm"})
+    >>> result.values["half"].value, result.formulas
     (0.013, {'numbers.half': 'arm / 2'})
     """
     findings = [finding for name in table for finding in spelling_findings(name)]
@@ -118,11 +118,11 @@ def read_numbers(table: Mapping[str, Any]) -> Numbers:
             texts[name] = raw
         else:
             values[name] = number
-    found, told = _evaluate(texts, values, table)
+    result, told = _evaluate(texts, values, table)
     findings += told
     return Numbers(
-        {name: found[name] for name in table if name in found},
-        _scope(table, found),
+        {name: result[name] for name in table if name in result},
+        _scope(table, result),
         {PREFIX + name: text for name, text in texts.items()},
         tuple(findings),
     )
@@ -157,16 +157,16 @@ def _evaluate(
         except ExpressionError as error:
             findings.append(Finding(PREFIX + name, error.what, error.advice))
     findings += cycle_findings(expressions)
-    found = dict(values)
+    result = dict(values)
     for name in _order(expressions):
         try:
-            amount = evaluate(expressions[name], _scope(table, found))
-            found[name] = NamedNumber(amount.value, shown_unit(amount))
+            amount = evaluate(expressions[name], _scope(table, result))
+            result[name] = NamedNumber(amount.value, shown_unit(amount))
         except ExpressionError as error:
             findings.append(Finding(PREFIX + name, error.what, error.advice))
         except UnknownAmountError:
             continue  # the error of its operand is reported
-    return found, findings
+    return result, findings
 
 
 def shown_unit(amount: Amount) -> str:
@@ -188,8 +188,8 @@ def _order(expressions: Mapping[str, Expression]) -> list[str]:
     return [name for name in TopologicalSorter(names).static_order() if name in names]
 
 
-def _scope(table: Mapping[str, Any], found: Mapping[str, NamedNumber]) -> Scope:
-    return {name: amount_of(found[name]) if name in found else None for name in table}
+def _scope(table: Mapping[str, Any], result: Mapping[str, NamedNumber]) -> Scope:
+    return {name: amount_of(result[name]) if name in result else None for name in table}
 
 
 def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
@@ -230,10 +230,10 @@ def cycles(expressions: Mapping[str, Expression]) -> Iterator[tuple[str, ...]]:
         try:
             TopologicalSorter(left).prepare()
         except CycleError as error:
-            found = tuple(reversed(error.args[1]))
-            first = found.index(min(found))
-            yield (*found[first:-1], *found[: first + 1]) if first else found
-            left = {name: names for name, names in left.items() if name not in found}
+            result = tuple(reversed(error.args[1]))
+            first = result.index(min(result))
+            yield (*result[first:-1], *result[: first + 1]) if first else result
+            left = {name: names for name, names in left.items() if name not in result}
         else:
             return
 

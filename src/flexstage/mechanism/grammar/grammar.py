@@ -329,8 +329,8 @@ class RecordNode(Node):
 
     def field_called(self, value: Any, key: str) -> str:
         """Field of a file key that is an alternative's name: `polar` for `pattern`."""
-        found = (name for name, slot in self.fields.items() if slot.wrapped is not None and self.key(value, name) == key)
-        return next(found, key)
+        result = (name for name, slot in self.fields.items() if slot.wrapped is not None and self.key(value, name) == key)
+        return next(result, key)
 
 
 @dataclass(frozen=True)

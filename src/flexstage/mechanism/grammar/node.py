@@ -249,12 +249,12 @@ class NumberNode(Node):
         """JSON string with a unit as in the example."""
         said = f", {self.bound.text()}" if self.bound and self.bound.text() else ""
         text = {"type": "string", "pattern": _WITH_UNIT}
-        told = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
+        description = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
         texts = [text, {"type": "string", "pattern": _FORMULA}] if definitions.formulas else [text]
         texts = [{"enum": [0, "0"]}, *texts]
         if self.quantity is not RATIO:
-            return {"anyOf": texts} | told
-        return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | told | {"examples": [float(self.quantity.example)]}
+            return {"anyOf": texts} | description
+        return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | description | {"examples": [float(self.quantity.example)]}
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
         """The number."""
@@ -559,7 +559,7 @@ class TextsNode(Node):
         """The texts as a tuple."""
         texts = [raw] if isinstance(raw, str) else raw
         if not isinstance(texts, list) or not texts:
-            return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Write it in quotes, several in brackets")
+            return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Put it in quotes, several in brackets")
         return every([reader.read(TextNode(), text, where) for text in texts])
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -648,7 +648,7 @@ def _float(raw: float, where: str) -> float:
     except OverflowError:
         value = math.inf
     if not math.isfinite(value):
-        raise refuse(where, f"must be finite (got {kind(raw)})", "Give a finite number")
+        raise refuse(where, f"must be finite (got {kind(raw)})", "Use a finite number")
     return value
 
 

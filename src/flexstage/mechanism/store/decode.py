@@ -94,13 +94,13 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
 
 
 def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
-    found = raw.get("format")
-    if found is None:
+    result = raw.get("format")
+    if result is None:
         reader.refuse("format", "missing", f'Begin the file with format = "{form}"')
-    elif found != form:
-        other = isinstance(found, str) and re.fullmatch(r"flexstage( [a-z]+)? \d+", found) and _kind_of(found) != _kind_of(form)
-        told = f", a {_kind_of(found)}, expected a {_kind_of(form)}" if other else ""
-        reader.refuse("format", f"unknown format (got {kind(found)}{told})", f'Begin a {_kind_of(form)} with format = "{form}"')
+    elif result != form:
+        other = isinstance(result, str) and re.fullmatch(r"flexstage( [a-z]+)? \d+", result) and _kind_of(result) != _kind_of(form)
+        told = f", a {_kind_of(result)}, expected a {_kind_of(form)}" if other else ""
+        reader.refuse("format", f"unknown format (got {kind(result)}{told})", f'Begin a {_kind_of(form)} with format = "{form}"')
         require(reader.findings)  # further errors of another kind of file are irrelevant
 
 
@@ -122,8 +122,8 @@ class _Files:
             reader.refuse(STAGES, f"must be a table (got {kind(raw)})", 'Use e.g. fine = { file = "fine.toml" }')
             return {}
         mounts = {name: reader.read(node_of(Mount), item, f"{STAGES}.{name}") for name, item in raw.items() if name != TAGS}
-        found = {name: (item, self.read(reader, name, item)) for name, item in mounts.items() if isinstance(item, Mount)}
-        return {name: (item, stage) for name, (item, stage) in found.items() if stage is not None}
+        result = {name: (item, self.read(reader, name, item)) for name, item in mounts.items() if isinstance(item, Mount)}
+        return {name: (item, stage) for name, (item, stage) in result.items() if stage is not None}
 
     def read(self, reader: Reader, name: str, item: Mount) -> Mechanism | None:
         """The stage in a file; an error if unreadable or circular."""

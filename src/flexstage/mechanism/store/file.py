@@ -25,7 +25,7 @@ _OPEN_STREAMS = ("/dev/stdin", "/dev/fd/")
 def read_text(path: str | os.PathLike[str]) -> str:
     """Read the text of a design file; raises `DesignError` if missing, not a regular file, too large or not UTF-8.
 
-    Open streams of a shell (`/dev/stdin`, `/dev/fd/63`) are read too; opening a named pipe could wait for ever.
+    Open streams of a shell (`/dev/stdin`, `/dev/fd/63`) are read too; opening a named pipe could block.
 
     >>> read_text("nowhere/stage.toml")
     Traceback (most recent call last):
@@ -91,7 +91,7 @@ def _unreadable(where: str, error: OSError | ValueError) -> DesignError:
     if isinstance(error, FileNotFoundError):
         return refuse(where, "file not found", 'Check the path; "flexstage new" writes a design file')
     if isinstance(error, IsADirectoryError):
-        return refuse(where, "not a file but a folder", "Name the design file in it")
+        return refuse(where, "not a file but a folder", "Use the design file in it")
     return refuse(where, f"cannot be read: {_reason(error)}", "Check the path and its permissions")
 
 

@@ -92,20 +92,20 @@ def _entries(name: str, where: str, above: tuple[Path, ...]) -> tuple[_Entries, 
     findings = list(with_lines(_strange(raw), text, name))
     included, told = with_included({key: value for key, value in raw.items() if key in (*SECTIONS, INCLUDE)}, str(path), (*above, here))
     findings += [replace(each, where=f"{name}: {each.where}") for each in told]
-    found: _Entries = {}
+    result: _Entries = {}
     for section, table in included.tree.items():
         for entry, value in table.items() if isinstance(table, dict) else ():
             if entry != TAGS:
                 address = f"{section}.{entry}"
-                found[address] = (_with_whole_paths(value, path.parent), *included.origin.get(address, (name, text)))
-    return found, [replace(each, where=f"{INCLUDE}: {each.where}") for each in findings]
+                result[address] = (_with_whole_paths(value, path.parent), *included.origin.get(address, (name, text)))
+    return result, [replace(each, where=f"{INCLUDE}: {each.where}") for each in findings]
 
 
 def _strange(raw: dict[str, Any]) -> Iterator[Finding]:
     """Errors of an included file: wrong or missing format, unsupported sections."""
     if raw.get("format") != FORMAT:
-        found = f"found {kind(raw['format'])}" if "format" in raw else "the file does not say its format"
-        yield Finding("format", found, f'The first line of an included file is format = "{FORMAT}"')
+        result = f"found {kind(raw['format'])}" if "format" in raw else "the file does not say its format"
+        yield Finding("format", result, f'The first line of an included file is format = "{FORMAT}"')
         return
     for key, value in raw.items():
         if key not in (*SECTIONS, *_BESIDE):

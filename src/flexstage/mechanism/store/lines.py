@@ -18,8 +18,8 @@ _OWNER = re.compile(r"(?P<owner>[^/.\s]+)/(?P<name>[^/.\s]+)(?:\.(?P<rest>.*))?"
 def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
     r"""Return the errors with the file `where` and the line before their addresses; for an inline table, its line.
 
-    >>> found = with_lines([Finding("placements.B1.unit", "it is lost", "Find it")], "[placements]\nB1 = { unit = 1 }", "stage.toml")
-    >>> print(next(found))
+    >>> result = with_lines([Finding("placements.B1.unit", "it is lost", "Find it")], "[placements]\nB1 = { unit = 1 }", "stage.toml")
+    >>> print(next(result))
     stage.toml:2: placements.B1.unit: it is lost. Find it.
     """
     lines = line_numbers(text)
@@ -43,10 +43,10 @@ def spot_of(finding: Finding, where: str) -> Spot:
     >>> spot_of(Finding("stage.toml:2: placements.B1.unit", "it is lost", "Find it"), "stage.toml")
     Spot(address='placements.B1.unit', line=2, column=None)
     """
-    found = _PLACE.fullmatch(finding.where)
-    if found is None or found["file"] != where:
+    result = _PLACE.fullmatch(finding.where)
+    if result is None or result["file"] != where:
         return Spot(finding.where.removeprefix(f"{where}: "))
-    return Spot(found["address"] or "", int(found["line"]), None if found["column"] is None else int(found["column"]))
+    return Spot(result["address"] or "", int(result["line"]), None if result["column"] is None else int(result["column"]))
 
 
 def line_of(address: str, lines: Mapping[str, int]) -> int | None:
@@ -68,13 +68,13 @@ def _tables(address: str) -> Iterator[str]:
 
 def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
     """An address, and for a link in a unit or an instance (`B4/pivot.at`) its possible addresses in the file, nearest first."""
-    found = _OWNER.fullmatch(address)
-    if found is None:
+    result = _OWNER.fullmatch(address)
+    if result is None:
         yield from (address, address.removeprefix("tags."))
         yield from (f"{kind}.{address}" for kind in ("bodies", "links") if f"{kind}.{address.partition('.')[0]}" in lines)
         yield from (each for each in lines if each.startswith(f"{address}."))
         return
-    owner, name, rest = found["owner"], found["name"], found["rest"]
+    owner, name, rest = result["owner"], result["name"], result["rest"]
     link = f".links.{name}"
     drawn = [each for each in lines if each.startswith("units.") and each.endswith(link)]
     unit = f"units.{owner}{link}" if f"units.{owner}{link}" in drawn else drawn[0] if len(drawn) == 1 else None
@@ -88,16 +88,16 @@ def line_numbers(text: str) -> Mapping[str, int]:
     >>> dict(line_numbers("rate = 1\n[floor]\nx.y = 2"))
     {'rate': 1, 'floor': 2, 'floor.x.y': 3}
     """
-    found: dict[str, int] = {}
+    result: dict[str, int] = {}
     table = ""
     for number, line in enumerate(text.splitlines(), start=1):
         if (head := _HEAD.match(line)) is not None:
             table = _address(head["name"])
-            found.setdefault(table, number)
+            result.setdefault(table, number)
         elif (key := _KEY.match(line)) is not None:
             name = _address(key["name"])
-            found.setdefault(f"{table}.{name}" if table else name, number)
-    return found
+            result.setdefault(f"{table}.{name}" if table else name, number)
+    return result
 
 
 def _address(name: str) -> str:

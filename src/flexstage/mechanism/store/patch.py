@@ -63,11 +63,11 @@ _Step = tuple[Mechanism, Mechanism, str]
 """Description before and after a change, and its address."""
 
 
-def _write(text: str, portions: list[list[_Step]], wanted: Mechanism, where: str) -> str:
+def _write(text: str, portions: list[list[_Step]], target: Mechanism, where: str) -> str:
     """The text after all changes, read again after each portion."""
     for steps in portions:
         text = _patch_steps(text, steps)
-    if read_design(text, where) != wanted:
+    if read_design(text, where) != target:
         raise refuse(where, "its table layout does not allow changes of single values", "Rewrite it with dump")
     return text
 

@@ -46,10 +46,10 @@ def _one_by_one(text: str, mechanism: Mechanism, tags: Mapping[str, str], where:
     """Each next to its value if the file's layout allows it, else in the table of all tags."""
     for address, tag in tags.items():
         ways = (_with_tags(text, mechanism, {address: tag}, where, beside=beside) for beside in (True, False))
-        found = next((way for way in ways if way is not None), None)
-        if found is None:
+        result = next((way for way in ways if way is not None), None)
+        if result is None:
             raise refuse(address, "the file's table layout does not allow a tag there", "Rewrite it with dump")
-        text = found
+        text = result
     return text
 
 
@@ -61,12 +61,12 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
             place = locate(mechanism, address)
             path = (NUMBERS, place.number) if place.number else place.path
             _put(document, path if beside and not place.owners else (), place.address, tag)
-        found = tomlkit.dumps(document)
-        now = read_design(found, where)
+        result = tomlkit.dumps(document)
+        now = read_design(result, where)
     except (tomlkit.exceptions.TOMLKitError, ValueError):  # a DesignError is a ValueError
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())
-    return found if told and now.overrides == mechanism.overrides and _same_physics(now, mechanism) else None
+    return result if told and now.overrides == mechanism.overrides and _same_physics(now, mechanism) else None
 
 
 def _same_physics(first: Mechanism, second: Mechanism) -> bool:

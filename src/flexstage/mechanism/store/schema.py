@@ -21,11 +21,11 @@ def schema() -> dict[str, Any]:
     >>> schema()["properties"]["max_mode_frequency"]["examples"]
     ['4 kHz']
     """
-    found = schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
+    result = schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
     said = "Included files with numbers, materials, parts, sensors, units and sources, relative to this file."
-    found["properties"] |= {INCLUDE: {"type": "array", "items": {"type": "string"}, "description": said}}
-    found["properties"] |= {CATALOGUE: {"type": "string", "description": "A file of further materials, actuators and sensors for `like`."}}
-    return found
+    result["properties"] |= {INCLUDE: {"type": "array", "items": {"type": "string"}, "description": said}}
+    result["properties"] |= {CATALOGUE: {"type": "string", "description": "A file of further materials, actuators and sensors for `like`."}}
+    return result
 
 
 def schema_of(

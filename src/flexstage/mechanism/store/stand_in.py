@@ -66,8 +66,8 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
         after = tomlkit.dumps(document)
     except (tomlkit.exceptions.TOMLKitError, KeyError) as error:
         raise refuse(where, f"the file cannot be changed: {error}", "Rewrite it with dump") from None
-    found = require_valid(read_design(after, where))
-    if any(found.parts.get(name) != part.given for name, part in parts.items()):
+    result = require_valid(read_design(after, where))
+    if any(result.parts.get(name) != part.given for name, part in parts.items()):
         raise refuse(where, "its table layout does not allow an exchange of parts", "Rewrite it with dump")
     return after
 
@@ -75,7 +75,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
 def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding]:
     drawn = {part.drawn_name for part in parts.values()}
     taken = {name + KEPT: name for name in drawn} | {name: part.drawn_name for name, part in parts.items() if name != part.drawn_name}
-    found = [
+    results = [
         Finding(f"parts.{name}", "the part name is in use", f"Rename it: the calibrated {old} requires the name")
         for name, old in taken.items()
         if name in mechanism.parts
@@ -87,8 +87,8 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding
         ends = [address for address in touched if f"/{key}".partition(".")[0].endswith(f"/{address.rpartition('/')[2]}")]
         if ends:
             what = f"it overrides {touched[ends[0]]}, whose 6x6 is shared"
-            found.append(Finding(f'overrides."{key}"', what, "Use a separate part for that link, or remove the override"))
-    return found
+            results.append(Finding(f'overrides."{key}"', what, "Use a separate part for that link, or remove the override"))
+    return results
 
 
 def _stand_in(document: Any, name: str, part: StandIn, tag: str) -> None:
