@@ -15,6 +15,7 @@ from flexstage.analysis.loaded.stroke import stroke
 from flexstage.models.nonlinear.paths.load_path import load_path
 from flexstage.models.nonlinear.stage import nonlinear
 from tests.analytic.hand_stages import STAGES
+from tests.apps.command import command_in
 
 HAND = 0.017
 """Accuracy of the closed forms."""
@@ -144,3 +145,14 @@ def test_drive_force_is_shared_by_the_flexures_that_bend(name):
     by_hand = {"xy": [1.0 / 16.0] * 16, "butterfly": [0.125] * 8, "roberts": [0.4, 0.4, 0.1, 0.1]}[name]
     np.testing.assert_allclose(own[: len(by_hand)], by_hand, rtol=2e-3)
     assert np.all(np.abs(found.total) < 2e-3)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("name", list(STAGES))
+def test_commands_take_the_stage(name, tmp_path, monkeypatch, capfdbinary):
+    """From `check` to the report, without a refusal."""
+    run = command_in(tmp_path, monkeypatch, capfdbinary)
+    (tmp_path / "stage.toml").write_text(STAGES[name])
+    for words in ("check", "analyse --full --report r.html --json r.json", "lost-motion", "modes", "response", "workspace", "stroke"):
+        ended = run(*words.split(), "stage.toml", *(["--drive", "platform.rz"] if (words, name) == ("stroke", "butterfly") else []))
+        assert ended.code == 0, f"{words}: {ended.err}"

@@ -13,11 +13,13 @@ from flexstage.analysis.dynamics.modes import Modes
 from flexstage.analysis.dynamics.random_response import random_response
 from flexstage.analysis.linear_statics import lost_motion as losses
 from flexstage.analysis.linear_statics.deflection import Deflection, deflection
+from flexstage.analysis.linear_statics.drive_force import drive_force
 from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.loaded.standing import standing
+from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.record import SideBySide, walk
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -39,6 +41,7 @@ from flexstage.show.tables import kinematics as motion_tables
 from flexstage.show.tables import lost_motion as loss_tables
 from flexstage.show.tables import statics as static_tables
 from flexstage.show.tables.deflection import deflection_table
+from flexstage.show.tables.force_workspace import drive_force_tables
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
@@ -138,9 +141,20 @@ def lost_motion(
     Prints transmission ratio, lost motion by part, parasitic motion, and the gains that correct the lost motion.
 
     With --at, --load, --fixed or --temperature: about that operating point. The ideal motion is that of the undeformed configuration.
+
+    Of force-driven stages: the force per displacement, compared with the ideal guide.
     """
-    there = footing(mechanism, place, model)
-    found = losses.lost_motion(ideal(mechanism), there.links)
+    there, kinematics = footing(mechanism, place, model), ideal(mechanism)
+    if kinematics.thrusts and not kinematics.actuated:
+        pushed = drive_force(kinematics, there.links, force_workspace(mechanism, kinematics, there.links))
+        return CommandResult(
+            mechanism,
+            lambda: there.body(pushed),
+            lambda: [*there.tables(), *drive_force_tables(pushed)],
+            model=model,
+            warnings=there.warnings,
+        )
+    found = losses.lost_motion(kinematics, there.links)
     return CommandResult(
         mechanism,
         lambda: there.body(found),
