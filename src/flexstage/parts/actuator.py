@@ -63,13 +63,17 @@ class ForceLimit:
 
 
 class ThrustActuator(Actuator):
-    """An actuator that exerts a force along x, positive pushing its faces apart."""
+    """An actuator that exerts a force along x, positive pushing its faces apart, or a torque about x.
 
+    `axis` is the place of its force or torque in its `wrench`.
+    """
+
+    axis: ClassVar[int] = 0
     travel: Number | None = None
 
     @property
     def thrust(self) -> Number:
-        """Force along x per unit of input: N/N or N/A."""
+        """Force along x or torque about x per unit of input: N/N, N/A or N m/A."""
         raise NotImplementedError
 
     @property
@@ -101,8 +105,8 @@ class ThrustActuator(Actuator):
 
     @property
     def wrench(self) -> Array:
-        """Its thrust along x."""
-        return np.asarray(self.thrust)[..., None] * np.eye(6)[0]
+        """Its thrust along x, or torque about x."""
+        return np.asarray(self.thrust)[..., None] * np.eye(6)[self.axis]
 
     @property
     def limits(self) -> Iterator[ForceLimit]:

@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Number, magnitude
 from flexstage.base.storage.digest import DOCUMENT_ONLY
 from flexstage.base.units.quantity import (
     CURRENT,
@@ -35,13 +35,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.shape import Order
 from flexstage.parts.stated import Stated, point_masses
 
-_DUTY = Bound(low=0.0, high=1.0, open_low=True)
-_AXIAL: Array = np.diag(np.eye(6)[0])
-
-
-def _axial(value: Number) -> Array:
-    """A 6x6 with one entry, along x."""
-    return np.asarray(value)[..., None, None] * _AXIAL
+DUTY = Bound(low=0.0, high=1.0, open_low=True)
 
 
 class Supply(Enum):
@@ -58,63 +52,48 @@ class CoilSide(Enum):
     SECOND = "second"
 
 
-@dataclass(frozen=True, eq=False)
-class VoiceCoil(ThrustActuator):
-    """A voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
+class Coil(ThrustActuator):
+    """A coil in the field of a magnet, driven by a current: limits, heat and damping by its thrust per ampere, along or about x."""
 
-    `mass` is that of the coil's side, which the body named by `coil` carries, `magnet_mass` that of the other side, carried by the other
-    body; both count at the link's centre, without rotary inertia. `stiffness` is the magnets' own along x (negative: they pull away from
-    the middle), `damping` the coil's own (eddy currents of its former); with `drive` "voltage" the coil's motion induces a voltage that
-    the amplifier does not make up for, and damps with k_f^2 / R more. `travel` is the whole range of motion along x for which the force
-    constant holds, half of it to either side. `temperature_rise` of the coil is what it bears, through `thermal_resistance` to its
-    surroundings; `duty` the share of time that the current flows in short use. The input is the current at rest: of a voltage drive V/R.
-
-    Not modelled: the change of R with temperature, saturation, and the lag L/R of the current under a voltage drive, which counts above
-    R / (2 pi L).
-    """
-
-    kind: ClassVar[str] = "voice_coil"
     input = CURRENT
-    force_constant: Annotated[Number, FORCE_CONSTANT, POSITIVE]
-    peak_current: Annotated[Number, CURRENT, POSITIVE] | None = None
-    continuous_current: Annotated[Number, CURRENT, POSITIVE] | None = None
-    voltage: Annotated[Number, VOLTAGE, POSITIVE] | None = None
-    maximum_force: Annotated[Number, FORCE, POSITIVE] | None = None
-    resistance: Annotated[Number, RESISTANCE, POSITIVE] | None = None
-    inductance: Annotated[Number, INDUCTANCE, POSITIVE] | None = None
-    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
-    magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
-    coil: CoilSide = CoilSide.SECOND
-    drive: Supply = Supply.CURRENT
-    stiffness: Annotated[Number, STIFFNESS] = 0.0
-    damping: Annotated[Number, VISCOUS_DAMPING, NOT_NEGATIVE] = 0.0
-    travel: Annotated[Number, DISPLACEMENT, POSITIVE] | None = None
-    thermal_resistance: Annotated[Number, THERMAL_RESISTANCE, POSITIVE] | None = None
-    temperature_rise: Annotated[Number, TEMPERATURE, POSITIVE] | None = None
-    duty: Annotated[Number, RATIO, _DUTY] = 1.0
-    source: str = field(default="", metadata=DOCUMENT_ONLY)
+    peak_current: Number | None
+    continuous_current: Number | None
+    voltage: Number | None
+    resistance: Number | None
+    inductance: Number | None
+    mass: Number
+    magnet_mass: Number
+    coil: CoilSide
+    drive: Supply
+    stiffness: Number
+    damping: Number
+    thermal_resistance: Number | None
+    temperature_rise: Number | None
+    duty: Number
 
     @property
-    def thrust(self) -> Number:
-        """The force constant [N/A]."""
-        return self.force_constant
+    def maximum(self) -> Number | None:
+        """Its largest force [N] or torque [N m]."""
+        raise NotImplementedError
 
     @property
     def viscous_damping(self) -> Number:
-        """Its own damping along x and, under a voltage drive, that of the induced voltage, k_f^2 / R [N s/m].
+        """Its own damping and, under a voltage drive, that of the induced voltage, k_f^2 / R [N s/m, N m s/rad].
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Supply.VOLTAGE).viscous_damping
         21.0
         """
         if self.drive is Supply.CURRENT or self.resistance is None:
             return self.damping
-        return self.damping + self.force_constant**2 / self.resistance
+        return self.damping + self.thrust**2 / self.resistance
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """The magnets' stiffness and the damping along x, both sides' masses."""
+        """The magnets' stiffness and the damping along or about x, both sides' masses."""
         sides = (self.mass, self.magnet_mass)
         mass = point_masses(*(sides if self.coil is CoilSide.FIRST else sides[::-1]))
-        return Stated(_axial(self.stiffness), mass, _axial(self.viscous_damping))
+        own = np.diag(np.eye(6)[self.axis])
+        stiffness, damping = (np.asarray(value)[..., None, None] * own for value in (self.stiffness, self.viscous_damping))
+        return Stated(stiffness, mass, damping)
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
@@ -127,8 +106,9 @@ class VoiceCoil(ThrustActuator):
             yield ForceLimit("heat", self.heat_current, self.heat_current * rested, clips=False)
         if self.voltage is not None and self.resistance is not None:
             yield ForceLimit("voltage", self.voltage / self.resistance, self.voltage / self.resistance)
-        if self.maximum_force is not None:
-            yield ForceLimit("maximum force", self.maximum_force / self.force_constant, self.maximum_force / self.force_constant)
+        if self.maximum is not None:
+            most = self.maximum / magnitude(self.thrust)
+            yield ForceLimit(f"maximum {'torque' if self.axis else 'force'}", most, most)
 
     @property
     def cutoff(self) -> Number | None:
@@ -187,3 +167,49 @@ class VoiceCoil(ThrustActuator):
             if asked and self.resistance is None:
                 what = "it states no resistance, and the current that a voltage drives follows from it"
                 yield Finding(name, what, 'Add for example resistance = "5 ohm"')
+
+
+@dataclass(frozen=True, eq=False)
+class VoiceCoil(Coil):
+    """A voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
+
+    `mass` is that of the coil's side, which the body named by `coil` carries, `magnet_mass` that of the other side, carried by the other
+    body; both count at the link's centre, without rotary inertia. `stiffness` is the magnets' own along x (negative: they pull away from
+    the middle), `damping` the coil's own (eddy currents of its former); with `drive` "voltage" the coil's motion induces a voltage that
+    the amplifier does not make up for, and damps with k_f^2 / R more. `travel` is the whole range of motion along x for which the force
+    constant holds, half of it to either side. `temperature_rise` of the coil is what it bears, through `thermal_resistance` to its
+    surroundings; `duty` the share of time that the current flows in short use. The input is the current at rest: of a voltage drive V/R.
+
+    Not modelled: the change of R with temperature, saturation, and the lag L/R of the current under a voltage drive, which counts above
+    R / (2 pi L).
+    """
+
+    kind: ClassVar[str] = "voice_coil"
+    force_constant: Annotated[Number, FORCE_CONSTANT, POSITIVE]
+    peak_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    continuous_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    voltage: Annotated[Number, VOLTAGE, POSITIVE] | None = None
+    maximum_force: Annotated[Number, FORCE, POSITIVE] | None = None
+    resistance: Annotated[Number, RESISTANCE, POSITIVE] | None = None
+    inductance: Annotated[Number, INDUCTANCE, POSITIVE] | None = None
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    coil: CoilSide = CoilSide.SECOND
+    drive: Supply = Supply.CURRENT
+    stiffness: Annotated[Number, STIFFNESS] = 0.0
+    damping: Annotated[Number, VISCOUS_DAMPING, NOT_NEGATIVE] = 0.0
+    travel: Annotated[Number, DISPLACEMENT, POSITIVE] | None = None
+    thermal_resistance: Annotated[Number, THERMAL_RESISTANCE, POSITIVE] | None = None
+    temperature_rise: Annotated[Number, TEMPERATURE, POSITIVE] | None = None
+    duty: Annotated[Number, RATIO, DUTY] = 1.0
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def thrust(self) -> Number:
+        """The force constant [N/A]."""
+        return self.force_constant
+
+    @property
+    def maximum(self) -> Number | None:
+        """Its largest force [N]."""
+        return self.maximum_force

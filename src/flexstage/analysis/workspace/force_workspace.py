@@ -26,7 +26,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.profile import single
-from flexstage.parts.voice_coil import VoiceCoil
+from flexstage.parts.voice_coil import Coil
 from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, Frame, twist_transform
 
 _ROUNDING, _NONE = 1e-12, 1e-9
@@ -232,8 +232,8 @@ def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per
         part = assembly.actuator(name)
         if isinstance(part, ThrustActuator) and part.travel is not None:
             imposed = model.imposed.get(link)
-            opened = (model.stiffness[link].operator @ moved)[..., 0, :]
-            opened = opened if imposed is None else opened - (imposed[..., columns] @ per_motion)[..., 0, :]
+            opened = (model.stiffness[link].operator @ moved)[..., part.axis, :]
+            opened = opened if imposed is None else opened - (imposed[..., columns] @ per_motion)[..., part.axis, :]
             yield f"{name} travel", _over(0.5 * np.asarray(part.travel)[..., None], opened)
 
 
@@ -292,11 +292,11 @@ def _bounds(names: tuple[str, ...], causes: _Causes, units: tuple[str, ...]) -> 
 
 def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], held: Array) -> dict[str, Matrix]:
     """What the inputs (..., n, f) of the held motions ask of every coil."""
-    coils = [name for name in inputs if isinstance(assembly.actuator(name), VoiceCoil)]
+    coils = [name for name in inputs if isinstance(assembly.actuator(name), Coil)]
     found: dict[str, list[Array]] = {"current": [], "voltage": [], "power": [], "rise": []}
     for name in coils:
         current, part = magnitude(held[..., inputs.index(name), :]), assembly.actuator(name)
-        assert isinstance(part, VoiceCoil)  # noqa: S101  coils are
+        assert isinstance(part, Coil)  # noqa: S101  coils are
         resistance, thermal = (np.nan if value is None else value for value in (part.resistance, part.thermal_resistance))
         resistance = np.asarray(resistance)[..., None]
         found["current"].append(current)
