@@ -49,6 +49,8 @@ HOMES = {
     "ModalDamping StructuralDamping RayleighDamping",
     "mechanism.store": "dump dumps load loads",
     "analysis.caveats": "check",
+    "studies.synthesis.search": "design",
+    "studies.synthesis.specification": "load_specification",
     "cases.registry": "case",
     "models.ideal": "ideal",
     "models.lumped": "lumped",

@@ -2,6 +2,12 @@ from flexstage import control as control, experiment as experiment, solid as sol
 from flexstage.analysis.caveats import (
     check as check,
 )
+from flexstage.studies.synthesis.search import (
+    design as design,
+)
+from flexstage.studies.synthesis.specification import (
+    load_specification as load_specification,
+)
 from flexstage.analysis.assessment.budget import (
     budget as budget,
 )

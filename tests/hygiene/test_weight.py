@@ -12,18 +12,18 @@ CEILINGS = {
     "spatial": 3_900,
     "parts": 37_600,
     "beams": 25_500,
-    "mechanism": 54_400,
+    "mechanism": 54_900,
     "cases": 1_200,
     "models": 90_800,
-    "analysis": 66_200,
+    "analysis": 66_500,
     "show": 62_800,
     "solid": 75_600,
     "experiment": 97_600,
     "control": 151_800,
-    "studies": 49_700,
+    "studies": 58_400,
     "apps": 34_400,
     ".": 400,
-    "all": 778_500,
+    "all": 787_900,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

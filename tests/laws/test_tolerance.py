@@ -300,7 +300,7 @@ def test_volts_of_a_stack_that_reaches_farther_move_the_stage_farther():
 def test_an_asymmetric_tolerance_shifts_the_mean(guide):
     """Between limits a and b the mean deviation is (a + b) / 2."""
     for text, spread in (("", 6.0 / 12.0**0.5), ('normal = "1 um", ', Distribution(Shape.NORMAL, 1.0, 3.0).deviation)):
-        study = guide(f'scatter.w = {{ address = "leaf.thickness", {text}limits = ["-1 um", "5 um"] }}', copies=512)
+        study = guide(f'scatter.w = {{ address = "leaf.thickness", {text}interval = ["-1 um", "5 um"] }}', copies=512)
         values = piece(study, 0, 512).variables[:, 0]
         assert values.min() >= -1e-6
         assert values.max() <= 5e-6
@@ -370,9 +370,9 @@ BAD = {
     'w = { address = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "they are of different quantities",
     'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
     'w = { address = "stacks.stroke", normal = "1 %" }': "the design has none of this kind",
-    'w = { address = "leaf.thickness", limits = ["5 um", "-1 um"] }': "the lower limit is not below the upper one",
-    'w = { address = "leaf.thickness", uniform = "5 um", limits = ["-1 um", "5 um"] }': "the limits are stated twice",
-    'w = { address = "leaf.thickness", limits = ["-1 um", "5 %"] }': "one is relative (%), the other not",
+    'w = { address = "leaf.thickness", interval = ["5 um", "-1 um"] }': "the lower limit is not below the upper one",
+    'w = { address = "leaf.thickness", uniform = "5 um", interval = ["-1 um", "5 um"] }': "the limits are stated twice",
+    'w = { address = "leaf.thickness", interval = ["-1 um", "5 %"] }': "one is relative (%), the other not",
     'w = { address = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
 }
 

@@ -180,6 +180,7 @@ leaf = { address = ["parts.leaf.width"], from = "40 mm", to = "0.06 m", levels =
 [scatter]
 wire = { address = "parts.leaf.thickness", normal = "5 um", within = "9 um", independent = false }
 wear = { address = "links.left.thickness", uniform = "5 um" }
+grind = { address = "links.right.thickness", interval = ["-1 um", "5 um"] }
 """
 """Every key that a study's file may have."""
 
@@ -188,7 +189,7 @@ def test_a_study_fits_and_is_read() -> None:
     assert fits(STUDY, study_schema())
     assert loads_study(STUDY).variables[1].step == pytest.approx(1e-3)
     assert len(load_optimisation(loads_study(STUDY)).objectives) == 2
-    assert [each.name for each in loads_tolerance(STUDY).scatters] == ["wire", "wear"]
+    assert [each.name for each in loads_tolerance(STUDY).scatters] == ["wire", "wear", "grind"]
     keys = {key for table in study_schema()["$defs"].values() for key in table["properties"]} | set(study_schema()["properties"])
     assert {key for key in keys if not re.search(rf"\b{key}\b", STUDY)} == {"design", "parameter"}
 

@@ -9,6 +9,7 @@ class File(Enum):
     DESIGN = "design"
     STUDY = "study"
     LOOP = "loop"
+    SPECIFICATION = "specification"
     HYSTERESIS = "hysteresis"
 
 

@@ -79,7 +79,7 @@ class OptimiseTable:
 class ScatterTable:
     """What deviates: `address`, a kind or several of them (absent: the name), by a standard deviation `normal` or a half width `uniform`.
 
-    Both with their unit or in percent of the nominal value. `within` truncates a normal distribution. `limits` of an asymmetric
+    Both with their unit or in percent of the nominal value. `within` truncates a normal distribution. `interval` of an asymmetric
     tolerance, lower and upper: uniform between them, or with `normal` about their middle and truncated there. `independent`: every
     instance has its own deviation.
     """
@@ -88,7 +88,7 @@ class ScatterTable:
     normal: Amount | None = None
     uniform: Amount | None = None
     within: Amount | None = None
-    limits: tuple[Amount, Amount] | None = None
+    interval: tuple[Amount, Amount] | None = None
     independent: bool = False
 
 

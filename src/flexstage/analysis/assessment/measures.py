@@ -10,6 +10,7 @@ from functools import partial, wraps
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.bench import KEPT, Bench
 from flexstage.analysis.linear_statics.statics import statics
@@ -552,6 +553,31 @@ def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
     if bounded is not None:
         raise bounded
     return float(least)
+
+
+@partial(MeasureKind, "frequency.unwanted", FREQUENCY)
+@_each_design
+def unwanted_frequency(bench: Bench, asked: Measure) -> float:
+    """Lowest natural frequency with the required motions of the platform held.
+
+    The null space N of the rows C of these motions gives the constrained stage, N'KN and N'MN . By interlacing it is not above
+    the n + 1st frequency of the free stage, n the number of held motions.
+    """
+    axes = [axis for axis, value in bench.command.items() if value]
+    if not axes:
+        raise refuse(asked.key, "no stroke is required, so that no motion is held", 'Add for example "stroke.x" = "at least 50 um"')
+    model = bench.model
+    rows = model.output[..., model.output_index(tuple(f"{PLATFORM}.{axis}" for axis in axes)), :]
+    free = scipy.linalg.null_space(np.real(rows))
+    matrices = (free.T @ np.real(each) @ free for each in (model.stiffness_matrix, model.inertia_matrix))
+    lowest = scipy.linalg.eigh(*matrices, eigvals_only=True, subset_by_index=(0, 0))[0]
+    return float(np.sqrt(max(lowest, 0.0)) / (2.0 * np.pi))
+
+
+@partial(MeasureKind, "numbers.<number>", RATIO)
+def named_number(bench: Bench, asked: Measure) -> Array:
+    """Value of a named number of the design file."""
+    return np.asarray(bench.mechanism.numbers[asked.name].value)
 
 
 def over(kind: MeasureKind) -> MeasureKind:

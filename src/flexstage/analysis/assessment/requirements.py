@@ -17,6 +17,7 @@ from flexstage.analysis.assessment.measures import (
     buckling_factor,
     direction_of,
     measure_kind,
+    named_number,
     over,
     path_buckling,
     safety,
@@ -25,7 +26,7 @@ from flexstage.analysis.loaded.course import drive_quantity
 from flexstage.base.finding import DesignError, Finding, refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import ANGLE, Quantity
-from flexstage.base.units.unit import parse
+from flexstage.base.units.unit import parse, quantity_of_unit
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.spatial.frame import COMPONENTS
@@ -135,6 +136,7 @@ def _names(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
         "n": tuple(str(number) for number in range(1, 7)),
         "actuator": tuple(assembly.actuators),
         "gauge": tuple(assembly.gauges),
+        "number": tuple(mechanism.numbers),
     }
 
 
@@ -186,6 +188,8 @@ def _measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     if kind.along:
         return _along(mechanism, (match["key"], kind, name), match["point"], where)
     point, quantity = _point_and_quantity(where, kind, name, match["point"], (PLATFORM, *expand(mechanism).points))
+    if kind is named_number:
+        quantity = quantity_of_unit(mechanism.numbers[name].unit)
     if match["path"] is None:
         return Measure(match["key"], kind, name, quantity, point)
     if match["path"] not in mechanism.paths:

@@ -115,6 +115,8 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage loop stage.toml --floor VC-D --report loop.html"),
     Command("serve", _CONTROL, "Run a stage as a virtual controller that programs drive over TCP.", f"{_CONTROLLED}.serve:serve",
             "flexstage serve stage.toml"),
+    Command("design", _IMPROVE, "Design stages for a specification.", f"{_STUDIES}.design:design",
+            "flexstage design spec.toml -o answers"),
     Command("sweep", _IMPROVE, "Compute many designs; show what varies with what.", f"{_STUDIES}.sweep:sweep",
             "flexstage sweep study.toml -o results.h5 --report sweep.html"),
     Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_STUDIES}.optimise:optimise",

@@ -35,6 +35,7 @@ from flexstage.show.plan import plan_figure
 from flexstage.show.tables.description import composition_table
 from flexstage.show.viewer.data import still_data
 from flexstage.studies.form import study_schema
+from flexstage.studies.synthesis.specification import specification_schema
 
 DEFAULT_CASE = "double-triangle"
 SCHEMA_FILE = "flexstage.schema.json"
@@ -118,12 +119,18 @@ def _tell_sound(design: Path, mechanism: Mechanism) -> None:
     print_result(f"{design}: no findings{said}.")
 
 
-_SCHEMAS = {File.DESIGN: design_schema, File.STUDY: study_schema, File.LOOP: setup_schema, File.HYSTERESIS: hysteresis_schema}
+_SCHEMAS = {
+    File.DESIGN: design_schema,
+    File.STUDY: study_schema,
+    File.LOOP: setup_schema,
+    File.SPECIFICATION: specification_schema,
+    File.HYSTERESIS: hysteresis_schema,
+}
 
 
 def schema(
     kind: Annotated[
-        File, typer.Argument(metavar="[KIND]", help="Kind of file: design, study, loop (set-up) or hysteresis (of a stack).")
+        File, typer.Argument(metavar="[KIND]", help="Kind of file: design, study, loop (set-up), specification or hysteresis (of a stack).")
     ] = File.DESIGN,
 ) -> None:
     """Print the JSON Schema of a kind of file, for editors."""

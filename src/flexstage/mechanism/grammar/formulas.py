@@ -257,12 +257,13 @@ def spelling_findings(name: str) -> Iterator[Finding]:
 
 
 def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Named numbers that no formula refers to.
+    """Named numbers that neither a formula nor a requirement refers to.
 
     >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
     numbers.arm: no formula refers to it, so that it changes nothing. Write it where it is meant, or take it out.
     """
     used = {name for text in mechanism.formulas.values() for name in parse_expression(text).names}
+    used |= {key.removeprefix(PREFIX) for key in mechanism.requirements}
     for name in mechanism.numbers:
         if name not in used:
             yield Finding(

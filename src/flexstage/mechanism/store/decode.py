@@ -156,7 +156,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
         return reader.note(missing)  # what they offer is not known, which says nothing about the rest
     try:
-        raw = _with_likes(reader, raw, _catalogue(raw.get(CATALOGUE), files.where))
+        raw = _with_likes(reader, raw, catalogue_of(raw.get(CATALOGUE), files.where))
     except DesignError as error:
         return reader.note(error.findings)
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES, CATALOGUE)}
@@ -197,7 +197,7 @@ def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
             yield key, value
 
 
-def _catalogue(name: Any, where: str) -> Catalogue:
+def catalogue_of(name: Any, where: str) -> Catalogue:
     """The shipped catalogue with the entries of the user's file of that name, from the folder of the design file."""
     if name is None:
         return shipped_catalogue()

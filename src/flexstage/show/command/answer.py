@@ -12,6 +12,7 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, get_origin, get_type_hints
 
+import typer
 from rich.console import Console
 
 from flexstage.analysis.caveats import Caveats, caveats
@@ -21,6 +22,7 @@ from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.design import DesignOptions
+from flexstage.show.command.failure import MISSED
 from flexstage.show.command.options import Csv, Json, Report, Xlsx
 from flexstage.show.command.output import STDOUT, announce, make_folder, require_writable, save, write
 from flexstage.show.command.terminal import print_note, print_styled, print_warning
@@ -51,6 +53,8 @@ class CommandResult:
     warnings: tuple[Finding, ...] = ()
     kind: str | None = None
     """The kind of the document, where it is not the name of the command."""
+    failed: bool = False
+    """Whether the command ends with exit code 1: it ran, and the answer is no."""
 
 
 _OUTPUTS = {"json": Json, "csv": Csv, "xlsx": Xlsx, "report": Report}
@@ -89,6 +93,8 @@ def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], C
             found = called(**{name: ({**made, **given} | opened)[name] for name in own})
             if found is not None:
                 write_result(found.kind or function.__name__.replace("_", "-"), found, outputs, given["csv"])
+                if found.failed:
+                    raise typer.Exit(MISSED)
 
         vars(run)["__signature__"] = Signature(offered)
         run.__annotations__ = {each.name: each.annotation for each in offered}

@@ -180,21 +180,21 @@ def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings:
 def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
     """Which distribution is meant."""
     given = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
-    if len(given) != 1 and (given or table.limits is None):
+    if len(given) != 1 and (given or table.interval is None):
         what = "it is both normal and uniform" if given else "it is not said how far it deviates"
-        advice = 'Write normal = "2 um", a standard deviation, uniform = "5 um", a half width, or limits = ["-1 um", "5 um"]'
+        advice = 'Write normal = "2 um", a standard deviation, uniform = "5 um", a half width, or interval = ["-1 um", "5 um"]'
         findings.append(Finding(f"{where}.normal", what, advice))
     if table.within is not None and given == [Shape.UNIFORM]:
         findings.append(Finding(f"{where}.within", "a uniform distribution ends by itself", "Leave it out"))
-    if table.limits is not None and (table.uniform is not None or table.within is not None):
-        findings.append(Finding(f"{where}.limits", "the limits are stated twice", "Leave out uniform or within"))
-    return given[0] if given else Shape.UNIFORM if table.limits else Shape.NORMAL
+    if table.interval is not None and (table.uniform is not None or table.within is not None):
+        findings.append(Finding(f"{where}.interval", "the limits are stated twice", "Leave out uniform or within"))
+    return given[0] if given else Shape.UNIFORM if table.interval else Shape.NORMAL
 
 
 def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quantity) -> tuple[Distribution, bool]:
     """The distribution, and whether its numbers are shares of what the design states."""
-    low, high = table.limits or (None, None)
-    raw = {"normal": table.normal, "uniform": table.uniform, "within": table.within, "limits.0": low, "limits.1": high}
+    low, high = table.interval or (None, None)
+    raw = {"normal": table.normal, "uniform": table.uniform, "within": table.within, "interval.0": low, "interval.1": high}
     given = {key: text for key, text in raw.items() if text is not None}
     if len({is_share(text) for text in given.values()}) > 1:
         raise refuse(f"{where}.within", "one is relative (%), the other not", "Give both alike")
@@ -204,17 +204,17 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         wanted = RATIO if is_share(text) else quantity
         try:
             sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
-            if not sizes[key] > 0.0 and key not in ("limits.0", "limits.1"):
+            if not sizes[key] > 0.0 and key not in ("interval.0", "interval.1"):
                 findings.append(Finding(f"{where}.{key}", f"found {show(sizes[key], wanted)}", "Give a deviation above 0"))
         except DesignError as error:
             findings += error.findings
     require(findings)
     relative = is_share(next(iter(given.values())))
-    if table.limits is None:
+    if table.interval is None:
         return Distribution(shape, sizes[shape.value], sizes.get("within")), relative
-    low, high = sizes["limits.0"], sizes["limits.1"]
+    low, high = sizes["interval.0"], sizes["interval.1"]
     if not low < high:
-        raise refuse(f"{where}.limits", "the lower limit is not below the upper one", 'Write for example limits = ["-1 um", "5 um"]')
+        raise refuse(f"{where}.interval", "the lower limit is not below the upper one", 'Write for example interval = ["-1 um", "5 um"]')
     half, middle = 0.5 * (high - low), 0.5 * (high + low)
     return Distribution(shape, sizes.get("normal", half), half if shape is Shape.NORMAL else None, middle), relative
 

@@ -1,0 +1,136 @@
+"""Performance bounds of a stage that hold for every mechanism: what actuators can reach at best, whatever levers and guides they use.
+
+Notation: displacements X of the motions in both directions [m, rad], masses M [kg] or moments of inertia [kg m^2] of the payload along
+them, at its centre of mass. Bounds are exact upper limits, not estimates.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import scipy
+
+from flexstage.base.number import Array
+
+
+def stroke_energy(stroke: float, stiffness: float, count: int = 1) -> float:
+    """Return the elastic energy U = n k (s/2)^2 [J] of `count` actuators of full stroke s [m] and stiffness k [N/m].
+
+    >>> round(stroke_energy(150e-6, 17e6, 6), 3)
+    0.574
+    """
+    return count * stiffness * (0.5 * stroke) ** 2
+
+
+def stiffness_bound(energy: float, displacement: float, negative_stiffness: float = 0.0) -> float:
+    """Return the largest stiffness K [N/m, N m/rad] along a motion that actuators of imposed stroke displace by X in both directions.
+
+    K X^2 <= U (1 + N/K), N >= 0 the negative part of the passive stiffness along the motion. Proof: with stroke ratios G, the stiffness is
+    K = G'kG + P, the passive part P >= -N. Strokes u move the stage by K x = G'k u. Hence x'Kx = (k^1/2 G x)'(k^1/2 u) is at most
+    (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The bound is the positive root of K^2 - (U/X^2) K - (U/X^2) N = 0.
+
+    >>> round(stiffness_bound(0.025, 1e-3))
+    25000
+    >>> round(stiffness_bound(0.025, 100e-6, 5e6) * 100e-6**2, 3)  # a stack of 10 N/um with a spring of -5 N/um
+    0.05
+    """
+    most = energy / displacement**2
+    return 0.5 * (most + math.sqrt(most * (most + 4.0 * negative_stiffness)))
+
+
+def frequency_bound(energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
+    """Return the highest first natural frequency [Hz] of a stage that reaches all displacements together.
+
+    The energies of the motions add up: sum K_j X_j^2 <= U, the mean over the corners of the required box. By Rayleigh's quotient
+    (2 pi f)^2 M_j <= K_j for the first frequency f, thus (2 pi f)^2 <= U / sum M_j X_j^2. Without negative stiffness.
+
+    >>> round(frequency_bound(2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 1)
+    94.2
+    """
+    return math.sqrt(energy / _weighted(displacements, masses)) / (2.0 * math.pi)
+
+
+def displacement_factor(energy: float, displacements: Mapping[str, float], masses: Mapping[str, float], frequency: float) -> float:
+    """Return the largest factor on all displacements at which the bound of the frequency [Hz] is still met.
+
+    >>> both = {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}
+    >>> round(0.5e-3 * displacement_factor(2 * stroke_energy(1e-3, 0.35e6), *both, 500.0) * 1e6, 1)
+    94.2
+    """
+    return math.sqrt(energy / _weighted(displacements, masses)) / (2.0 * math.pi * frequency)
+
+
+def required_energy(displacements: Mapping[str, float], masses: Mapping[str, float], frequency: float) -> float:
+    """Return the energy U [J] that actuators need at least for a first natural frequency [Hz].
+
+    >>> round(required_energy({"x": 0.5e-3}, {"x": 1.0}, 500.0), 2)
+    2.47
+    """
+    return (2.0 * math.pi * frequency) ** 2 * _weighted(displacements, masses)
+
+
+def _weighted(displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
+    return sum(masses[axis] * value**2 for axis, value in displacements.items())
+
+
+@dataclass(frozen=True)
+class ForceSource:
+    """An actuator of continuous force [N] with a moving mass [kg] and a full travel [m]; `count` of them act along the motion."""
+
+    force: float
+    mass: float
+    travel: float = math.inf
+    count: int = 1
+
+
+def force_frequency_bound(source: ForceSource, displacement: float, mass: float) -> float:
+    """Return the highest frequency [Hz] of a motion that continuous forces displace by X in both directions, through the best levers.
+
+    With lever ratios g = dx/dX <= T/(2X) for a travel T: K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K, K the total stiffness, so that
+    negative springs do not break the bound. The best ratio is sqrt(M/(n m)), or the one that the travel allows. g = 1 is direct drive.
+
+    >>> coil = ForceSource(force=73.9, mass=0.18, travel=26e-3)
+    >>> round(force_frequency_bound(coil, 0.5e-3, 1.0), 1)
+    66.4
+    """
+    most = source.travel / (2.0 * displacement)
+    ratio = min(math.sqrt(mass / (source.count * source.mass)) if source.mass > 0.0 else most, most)
+    if math.isinf(ratio):
+        return math.inf
+    moving = mass + source.count * source.mass * ratio**2
+    return math.sqrt(source.count * source.force * ratio / (displacement * moving)) / (2.0 * math.pi)
+
+
+def leaf_length(thickness: float, displacement: float, young: float, poisson: float, stress: float) -> float:
+    """Return the least length [m] of a wide guided leaf for a displacement of its end [m] at an allowable stress [Pa].
+
+    The bending stress is 3 E t d / ((1 - nu^2) L^2).
+
+    >>> round(leaf_length(0.5e-3, 1e-3, 200e9, 0.3, 500e6) * 1e3, 1)
+    25.7
+    """
+    return math.sqrt(3.0 * young * thickness * displacement / ((1.0 - poisson**2) * stress))
+
+
+def efficiency(frequency: float, energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
+    """Return the stroke energy that a stage of a first natural frequency [Hz] uses, as a share of that of its actuators: at most 1.
+
+    >>> round(efficiency(50.0, 2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 3)
+    0.282
+    """
+    return required_energy(displacements, masses, frequency) / energy
+
+
+def generalised_masses(inertia: Array, motions: list[int]) -> Array:
+    """Return the masses of pure motions: the diagonal of the payload's 6x6 inertia about its centre of mass, by component number.
+
+    For rotations about the centre of mass, 1 / (J^-1)_ii bounds the inertia of a rotation that may couple to the others.
+
+    >>> import numpy as np
+    >>> generalised_masses(np.diag([1.0, 1.0, 1.0, 2.0, 3.0, 4.0]), [0, 5]).tolist()
+    [1.0, 4.0]
+    """
+    inverse = scipy.linalg.inv(inertia)
+    return 1.0 / inverse.diagonal()[motions]

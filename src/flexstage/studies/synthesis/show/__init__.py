@@ -1,0 +1,1 @@
+"""How answers to a specification are shown."""

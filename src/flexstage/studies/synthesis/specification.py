@@ -1,0 +1,249 @@
+"""The specification of a stage: motions, payload, box, requirements; read from a file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, ROTATION, Bound
+from flexstage.base.units.unit import parse
+from flexstage.mechanism.grammar.node import TextsNode
+from flexstage.mechanism.store.decode import catalogue_of, record_from
+from flexstage.mechanism.store.file import parse_toml, read_text
+from flexstage.mechanism.store.lines import with_lines
+from flexstage.mechanism.store.schema import schema_of
+from flexstage.parts.body import Inertia
+from flexstage.spatial.frame import COMPONENTS
+
+FORMAT = "flexstage specification 1"
+FREQUENCY_KEYS = ("frequency", "unwanted")
+"""Requirements of their own: the first natural frequency, and the first of a motion that is not required."""
+
+_Texts = Annotated[tuple[str, ...], TextsNode()]
+_Length = Annotated[float, LENGTH, POSITIVE]
+_Box = tuple[_Length, _Length, _Length]
+_STARTS = Bound(low=1.0)
+
+
+class ActuatorKind(Enum):
+    """Kinds of actuators, as parts of a design file call them."""
+
+    PIEZO = "piezo"
+    AMPLIFIED = "amplified"
+    VOICE_COIL = "voice_coil"
+
+
+@dataclass(frozen=True)
+class MotionTable:
+    """Required displacement of the payload along each axis, in both directions; an axis without one is to be stiff."""
+
+    x: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
+    y: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
+    z: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
+    rx: Annotated[float, ROTATION, POSITIVE] | None = None
+    ry: Annotated[float, ROTATION, POSITIVE] | None = None
+    rz: Annotated[float, ROTATION, POSITIVE] | None = None
+
+
+@dataclass(frozen=True)
+class PayloadTable:
+    """The payload: mass, and `size` of a uniform block or `inertia` about its centre of mass, `height` above the platform.
+
+    The default height is half of the block's.
+    """
+
+    mass: Annotated[float, MASS, POSITIVE]
+    size: _Box | None = None
+    inertia: Inertia | None = None
+    height: Annotated[float, LENGTH, NOT_NEGATIVE] | None = None
+
+
+@dataclass(frozen=True)
+class BoxTable:
+    """The largest size of the stage, and its clear opening along z."""
+
+    size: _Box
+    opening: tuple[_Length, _Length] | None = None
+
+
+@dataclass(frozen=True)
+class MakeTable:
+    """Materials of flexures and of bodies, by name of the catalogue, the thinnest flexure and the step of dimensions."""
+
+    flexures: str = "7075-T6"
+    bodies: str = "7075-T6"
+    thinnest: _Length = 0.3e-3
+    step: _Length = 10e-6
+
+
+@dataclass(frozen=True)
+class ActuatorTable:
+    """The kinds of actuators to choose from; `like` restricts them to entries of the catalogue."""
+
+    kinds: tuple[ActuatorKind, ...] = tuple(ActuatorKind)
+    like: _Texts | None = None
+
+
+@dataclass(frozen=True)
+class GoalTable:
+    """What to `maximise` or `minimise`: a requirement's key. The default maximises the first required frequency."""
+
+    maximise: str | None = None
+    minimise: str | None = None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Specification:
+    """A specification: what a stage must do, in the frame of its box (z is up).
+
+    `requirements` are `frequency` (first natural frequency), `unwanted` (first frequency of a motion that is not required), and any measure
+    of a design file's requirements; `safety` is at least 2 unless stated.
+
+    `together`: all displacements are reached at once, at the corners of their box, instead of each on its own. `starts` and `seed` belong
+    to the search of each pair.
+    """
+
+    name: str
+    motion: MotionTable
+    payload: PayloadTable
+    box: BoxTable
+    requirements: Mapping[str, str] = field(default_factory=dict)
+    make: MakeTable = MakeTable()
+    actuators: ActuatorTable = ActuatorTable()
+    goals: GoalTable = GoalTable()
+    together: bool = False
+    catalogue: str | None = None
+    starts: Annotated[int, _STARTS] = 2
+    seed: Annotated[int, NOT_NEGATIVE] = 0
+
+    @property
+    def displacements(self) -> dict[str, float]:
+        """The required displacements [m, rad] by axis."""
+        found = {each.name: getattr(self.motion, each.name) for each in fields(self.motion)}
+        return {axis: value for axis, value in found.items() if value is not None}
+
+    @property
+    def inertia(self) -> Array:
+        """The payload's 6x6 inertia about its centre of mass [kg, kg m^2]."""
+        block = np.zeros((3, 3))
+        if self.payload.inertia is not None:
+            each = self.payload.inertia
+            block = np.array([[each.xx, each.xy, each.xz], [each.xy, each.yy, each.yz], [each.xz, each.yz, each.zz]], dtype=float)
+        elif self.payload.size is not None:
+            squares = np.square(self.payload.size)
+            block = self.payload.mass / 12.0 * np.diag(np.sum(squares) - squares)
+        found = np.zeros((6, 6))
+        found[:3, :3], found[3:, 3:] = self.payload.mass * np.eye(3), block
+        return found
+
+    @property
+    def masses(self) -> dict[str, float]:
+        """Mass or moment of inertia along each required motion, of the payload alone; zero of a rotation without an inertia."""
+        inertia = self.inertia
+        return {axis: float(inertia[index, index]) for index, axis in enumerate(COMPONENTS) if axis in self.displacements}
+
+    def frequency_limit(self, key: str) -> float | None:
+        """The required frequency [Hz] of a key, `None` without one."""
+        text = self.requirements.get(key)
+        return None if text is None else parse(text.removeprefix("at least "), FREQUENCY, where=f"requirements.{key}")
+
+    @property
+    def goal(self) -> tuple[str, str]:
+        """The direction (maximise, minimise) and the key of the goal."""
+        if self.goals.minimise is not None:
+            return "minimise", self.goals.minimise
+        default = next((key for key in FREQUENCY_KEYS if key in self.requirements), FREQUENCY_KEYS[0])
+        return "maximise", self.goals.maximise or default
+
+
+@check_arguments
+def load_specification(path: str | os.PathLike[str]) -> Specification:
+    """Read a specification file. Raises `DesignError` with all its errors.
+
+    >>> load_specification("nowhere/spec.toml")
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: nowhere/spec.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    """
+    return loads_specification(read_text(path), where=os.fspath(path))
+
+
+def loads_specification(text: str, *, where: str = "text") -> Specification:
+    """Read a specification from its text; a catalogue that it names is in the folder of `where`.
+
+    >>> found = loads_specification('''
+    ... format = "flexstage specification 1"
+    ... name = "scanner"
+    ... motion = { x = "50 um", y = "50 um" }
+    ... payload = { mass = "30 g", size = ["30 mm", "30 mm", "5 mm"] }
+    ... box = { size = ["260 mm", "260 mm", "40 mm"] }
+    ... requirements.frequency = "at least 1 kHz"
+    ... ''')
+    >>> found.displacements, found.frequency_limit("frequency"), found.goal
+    ({'x': 5e-05, 'y': 5e-05}, 1000.0, ('maximise', 'frequency'))
+    """
+    raw = parse_toml(text, where)
+    try:
+        found = record_from(Specification, raw, FORMAT, tagged=False)
+        if found.catalogue is not None:
+            found = replace(found, catalogue=str((Path(where).parent / found.catalogue).resolve()))
+        require([*_findings(found), *actuator_findings(found, where)])
+    except DesignError as error:
+        raise DesignError(with_lines(error.findings, text, where)) from None
+    return found
+
+
+def specification_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a specification file.
+
+    >>> specification_schema()["properties"]["format"]
+    {'const': 'flexstage specification 1'}
+    """
+    return schema_of(Specification, FORMAT, "flexstage specification", tagged=False)
+
+
+def _findings(spec: Specification) -> Iterator[Finding]:
+    """Contradictions within a specification."""
+    if not spec.displacements:
+        yield Finding("motion", "no displacement is required", 'Write for example motion = { x = "50 um" }')
+    if not any(key in FREQUENCY_KEYS or key.startswith("stiffness") for key in spec.requirements):
+        yield Finding("requirements", "no frequency or stiffness is required", 'Write for example frequency = "at least 100 Hz"')
+    for key in FREQUENCY_KEYS:
+        try:
+            spec.frequency_limit(key)
+        except DesignError as error:
+            yield from error.findings
+    yield from _size_findings(spec)
+    if any(axis.startswith("r") for axis in spec.displacements) and spec.payload.size is None and spec.payload.inertia is None:
+        what = "a rotation is required, and the payload has neither size nor inertia"
+        yield Finding("payload", what, 'Write for example size = ["30 mm", "30 mm", "5 mm"]')
+    if spec.goals.maximise is not None and spec.goals.minimise is not None:
+        yield Finding("goals", "there are two goals", "Keep one, and set a requirement for the other")
+
+
+def _size_findings(spec: Specification) -> Iterator[Finding]:
+    """Sizes and displacements that do not fit into the box."""
+    for axis, size, payload in zip("xyz", spec.box.size, spec.payload.size or (0.0,) * 3, strict=True):
+        if payload > size:
+            what = f"the payload is wider than the box along {axis} (got {payload:g} m, expected at most {size:g} m)"
+            yield Finding("payload.size", what, "Enlarge the box")
+        if (spec.displacements.get(axis) or 0.0) > 0.5 * size:
+            what = f"the displacement exceeds the box (got {spec.displacements[axis]:g} m, expected at most {0.5 * size:g} m)"
+            yield Finding(f"motion.{axis}", what, "Enlarge the box")
+
+
+def actuator_findings(spec: Specification, where: str) -> Iterator[Finding]:
+    """Actuators that the catalogue, looked for in the folder of `where`, does not have."""
+    names = [name for section in catalogue_of(spec.catalogue, where).sections if section.key == "parts" for name in section.entries]
+    for name in spec.actuators.like or ():
+        if name not in names:
+            yield Finding("actuators.like", f'unknown actuator "{name}"', suggest_nearest(name, names))

@@ -1,0 +1,240 @@
+"""From a specification to stages: bounds that no mechanism exceeds, architectures without clashes, answers that keep their requirements."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.assessment.judge import bench_of
+from flexstage.analysis.assessment.requirements import measure
+from flexstage.base.finding import DesignError
+from flexstage.mechanism.addresses.address import set_value
+from flexstage.studies.synthesis import bounds
+from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
+from flexstage.studies.synthesis.search import Answer, CandidatePair, FailedPair, design, search
+from flexstage.studies.synthesis.specification import Specification, loads_specification
+from tests.conftest import FULL
+
+SCANNER = """
+format = "flexstage specification 1"
+name = "scanner"
+motion = { x = "50 um", y = "50 um" }
+payload = { mass = "30 g", size = ["30 mm", "30 mm", "5 mm"] }
+box = { size = ["260 mm", "260 mm", "40 mm"] }
+actuators.like = "PSt 1000/10/150 VS18"
+requirements.frequency = "at least 500 Hz"
+"""
+COIL = """
+[coils.ours]
+force_constant = "32 N/A"
+continuous_current = "2.5 A"
+resistance = "5 ohm"
+mass = "180 g"
+magnet_mass = "950 g"
+travel = "26 mm"
+"""
+MOTIONS = {
+    "guide": 'motion.z = "15 um"',
+    "folded": 'motion.y = "0.5 mm"',
+    "carriages": 'motion = { x = "20 um", y = "20 um" }',
+    "tilt": 'motion = { rx = "1 mrad", ry = "1 mrad" }',
+    "hexapod": "motion = " + '{ x = "30 um", y = "30 um", z = "60 um", rx = "300 urad", ry = "300 urad", rz = "100 urad" }',
+}
+
+
+def specification(name: str, folder: Path) -> Specification:
+    """A specification for an architecture, in a large box."""
+    (folder / "lab.toml").write_text(COIL)
+    text = (
+        SCANNER.replace('motion = { x = "50 um", y = "50 um" }', MOTIONS[name]).replace("260 mm", "500 mm").replace('"40 mm"', '"400 mm"')
+    )
+    text = text.replace('actuators.like = "PSt 1000/10/150 VS18"', 'catalogue = "lab.toml"').replace("500 Hz", "10 Hz")
+    return loads_specification(text, where=str(folder / "spec.toml"))
+
+
+def used_share(rng: np.random.Generator) -> float:
+    """K X^2 over the stroke energy of a random mechanism: any stroke ratios of any actuators, elastic guides, free internal coordinates.
+
+    K is the stiffness against the whole displaced shape, which bounds that along any motion from above: the sharper test.
+    """
+    coordinates, actuators = int(rng.integers(1, 6)), int(rng.integers(1, 7))
+    ratios = rng.normal(size=(actuators, coordinates)) * np.exp(rng.normal(size=(actuators, 1)))
+    stiffness, strokes = np.exp(rng.normal(size=actuators)), np.exp(rng.normal(size=actuators))
+    guides = rng.normal(size=(coordinates, coordinates))
+    whole = ratios.T @ np.diag(stiffness) @ ratios + rng.choice([1e-6, 0.1, 1.0]) * (guides @ guides.T + 1e-3 * np.eye(coordinates))
+    moved = np.linalg.solve(whole, ratios.T @ (stiffness * rng.choice([-1.0, 1.0], actuators) * strokes))
+    return float(moved @ whole @ moved) / float(np.sum(stiffness * strokes**2))
+
+
+def test_no_mechanism_exceeds_the_bound_of_stiffness_and_displacement() -> None:
+    rng = np.random.default_rng(1)
+    shares = [used_share(rng) for _ in range(20_000 if FULL else 1000)]
+    assert max(shares) <= 1.0 + 1e-9
+    assert max(shares) > 0.95
+
+
+def test_negative_stiffness_raises_the_bound_and_breaks_the_simple_one() -> None:
+    """A stack of stiffness k and stroke s with a spring of -n in parallel: K = k - n, X = k (s/2) / (k - n) reaches the bound exactly."""
+    rng = np.random.default_rng(2)
+    for _ in range(100):
+        stiffness, stroke = np.exp(rng.normal(size=2))
+        negative = rng.uniform(0.05, 0.95) * stiffness
+        energy, displacement = bounds.stroke_energy(stroke, stiffness), stiffness * 0.5 * stroke / (stiffness - negative)
+        assert bounds.stiffness_bound(energy, displacement, negative) == pytest.approx(stiffness - negative, rel=1e-9)
+        assert (stiffness - negative) * displacement**2 > energy
+
+
+def test_bounds_of_an_impossible_scanner() -> None:
+    """+-0.5 mm, 1 kg, one amplified actuator of 1 mm and 0.35 N/um an axis: 94.2 Hz, or 94 um at 500 Hz; two of them: sqrt(2) times."""
+    both = {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}
+    energy = bounds.stroke_energy(1e-3, 0.35e6, 2)
+    assert bounds.frequency_bound(energy, *both) == pytest.approx(94.2, rel=5e-3)
+    assert 0.5e-3 * bounds.displacement_factor(energy, *both, 500.0) == pytest.approx(94e-6, rel=5e-3)
+    assert bounds.frequency_bound(2.0 * energy, *both) == pytest.approx(2.0**0.5 * bounds.frequency_bound(energy, *both), rel=1e-12)
+    coil = bounds.ForceSource(73.9, 0.18, 26e-3)
+    assert bounds.force_frequency_bound(coil, 0.5e-3, 1.0) == pytest.approx(66.4, rel=2e-3)
+    assert bounds.force_frequency_bound(replace(coil, travel=1e-3), 0.5e-3, 1.0) == pytest.approx(56.3, rel=2e-3)
+
+
+def test_levers_with_mass_do_not_exceed_the_bound_of_forces() -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(300):
+        force, mass, payload, displacement = np.exp(rng.normal(size=4))
+        ratio, lever, stiffness = np.exp(rng.normal()), 0.1 * rng.random(), np.inf
+        stiffness = force * ratio / displacement  # the stiffest that the force still displaces so far
+        found = np.sqrt(stiffness / (payload + lever + mass * ratio**2)) / (2.0 * np.pi)
+        assert found <= bounds.force_frequency_bound(bounds.ForceSource(force, mass), displacement, payload) * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("name", architectures())
+def test_architectures_have_no_clash_for_any_values(name: str, tmp_path: Path) -> None:
+    """Random values in the ranges: no outlines overlap and every end lies on a face; no stage exceeds the bound."""
+    spec = specification(name, tmp_path)
+    architecture, rng = architectures()[name], np.random.default_rng(4)
+    actuators = catalogue_actuators(spec)[architecture.kind]
+    for number in range(200 if FULL else 3):
+        actuator = actuators[number % len(actuators)]
+        stage = fs.loads(draw(architecture, spec, actuator))
+        for each in variables(architecture, scope(architecture, spec, actuator)):
+            share = rng.random()
+            value = each.low + share * (each.high - each.low) if each.low <= 0.0 else each.low * (each.high / each.low) ** share
+            stage = set_value(stage, f"numbers.{each.name}", value)
+        if any(float(stage.numbers[name].value) < 0.0 for name in ("rim", "gap") if name in stage.numbers):
+            continue  # excluded by a limit of the architecture
+        told = [str(each) for each in fs.check(stage) if re.search("overlap|away from|end face", str(each))]
+        assert told == []
+
+
+def test_an_answer_keeps_its_requirements_and_stays_below_its_bound() -> None:
+    spec = loads_specification(SCANNER)
+    found = fs.design(spec)
+    answer = found.best
+    assert answer is not None
+    analysed = fs.analyse(answer.stage)
+    assert all(bool(verdict.passed) for verdict in analysed.verdicts)
+    assert analysed.modes is not None
+    assert answer.goal == pytest.approx(float(analysed.modes.frequencies[0]), rel=1e-6)
+    assert answer.efficiency is not None
+    assert 0.0 < answer.efficiency <= 1.0
+    assert answer.warnings == ()
+
+
+def test_heavier_carriages_do_not_raise_the_frequency() -> None:
+    spec = loads_specification(SCANNER)
+    stage = fs.loads(draw(architectures()["carriages"], spec, catalogue_actuators(spec)["piezo"][0]))
+    platform, before = measure(stage, "frequency.platform.1", "here"), np.inf
+    for factor in (1.0, 10.0, 100.0, 1000.0):
+        heavy = replace(
+            stage, materials={**stage.materials, "heavy": replace(stage.materials["body"], density=factor * 2810.0)}, formulas={}
+        )
+        block = heavy.units["side"].bodies["carriage"].solids["block"]
+        carriage = replace(heavy.units["side"].bodies["carriage"], solids={"block": replace(block, material="heavy")})
+        units = {name: replace(unit, bodies={**unit.bodies, "carriage": carriage}) for name, unit in heavy.units.items() if name == "side"}
+        found = float(platform.kind.value(bench_of(replace(heavy, units={**heavy.units, **units})), platform))
+        assert found <= before * (1.0 + 1e-9)
+        before = found
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "xy-stage", "hexapod", "double-triangle", "voice-coil-xy"])
+def test_the_first_unwanted_frequency_interlaces(name: str) -> None:
+    """With n motions held, the lowest frequency is between the first and the n + 1st of the free stage."""
+    stage = fs.case(name)
+    bench = bench_of(stage)
+    unwanted = measure(stage, "frequency.unwanted", "here")
+    found, free = float(unwanted.kind.value(bench, unwanted)), bench.modes.frequencies
+    assert free[0] * (1.0 - 1e-9) <= found <= free[len(bench.command)] * (1.0 + 1e-9)
+
+
+def test_named_numbers_are_measures() -> None:
+    stage = fs.case("parallelogram")
+    number = measure(stage, "numbers.inset", "here")
+    assert float(number.kind.value(bench_of(stage), number)) == pytest.approx(6.5e-3)
+    assert number.quantity.shown == "mm"
+    with pytest.raises(DesignError, match=r"numbers\.leaf_length"):
+        measure(stage, "numbers.leaf_lenth", "here")
+
+
+def test_a_relaxed_value_gives_an_answer() -> None:
+    """The box is too short for the stack; with the length that the search names there is a stage."""
+    text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ x = "20 um" }').replace('"PSt 1000/10/150 VS18"', '"PiezoDrive SA050536"')
+    text = text.replace('"260 mm", "260 mm"', '"60 mm", "200 mm"').replace('name = "scanner"', 'name = "scanner"\nstarts = 1')
+    hard = loads_specification(text)
+    found = fs.design(hard)
+    assert found.best is None
+    (relaxed,) = found.failed[0].relaxed
+    assert relaxed.measure == "envelope.x"
+    box = replace(hard.box, size=(1.001 * relaxed.value, *hard.box.size[1:]))
+    pair = CandidatePair(architectures()["guide"], catalogue_actuators(hard)["piezo"][0])
+    assert isinstance(search(replace(hard, box=box), pair), Answer)
+    assert isinstance(search(replace(hard, box=replace(box, size=(0.99 * relaxed.value, *box.size[1:]))), pair), FailedPair)
+
+
+def test_motions_of_one_axis_are_turned(tmp_path: Path) -> None:
+    """A motion along y or z is that of the file's x; payload, box and gravity follow."""
+    spec = replace(specification("guide", tmp_path), actuators=loads_specification(SCANNER).actuators)
+    stage = fs.loads(draw(architectures()["guide"], spec, catalogue_actuators(spec)["piezo"][0]), checked=False)
+    assert stage.gravity[0] == pytest.approx(-9.80665)
+    assert stage.envelope is not None
+    assert tuple(stage.envelope) == pytest.approx((0.4, 0.5, 0.5))
+    assert set(stage.requirements) >= {"stroke.x", "frequency.1"}
+
+
+BAD = {
+    "motion = {": ("motions = {", "motion"),
+    'x = "50 um", y = "50 um"': ("", "no displacement is required"),
+    'x = "50 um"': ('x = "-50 um"', "motion.x"),
+    'x = "50 um", ': ('x = "200 mm", ', "the displacement exceeds the box"),
+    'y = "50 um"': ('rz = "1 mrad"', "no architecture has exactly the motions x, rz"),
+    '"30 g"': ('"30 mm"', "a mass is expected"),
+    '"5 mm"]': ('"50 mm"]', "the payload is wider than the box along z"),
+    "at least 500 Hz": ("at least 500 mm", "frequency is expected"),
+    'requirements.frequency = "at least 500 Hz"': ("", "no frequency or stiffness is required"),
+    '"PSt 1000/10/150 VS18"': ('"PSt 1000/10/155"', 'unknown actuator "PSt 1000/10/155"'),
+    "requirements.frequency": (
+        'goals = { maximise = "frequency", minimise = "envelope.x" }\nrequirements.frequency',
+        "there are two goals",
+    ),
+    'name = "scanner"': ('name = "scanner"\ncatalogue = "nowhere.toml"', "there is no such file"),
+    "specification 1": ("study 1", "a study file, where a specification file is expected"),
+}
+
+
+@pytest.mark.parametrize("old", BAD)
+def test_bad_specifications(old: str) -> None:
+    new, words = BAD[old]
+    with pytest.raises(DesignError) as caught:
+        design(loads_specification(SCANNER.replace(old, new, 1)))
+    assert words in str(caught.value)
+
+
+def test_rotations_need_an_inertia() -> None:
+    text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ rx = "1 mrad", ry = "1 mrad" }').replace(
+        ', size = ["30 mm", "30 mm", "5 mm"]', ""
+    )
+    with pytest.raises(DesignError, match="neither size nor inertia"):
+        loads_specification(text)
