@@ -36,8 +36,8 @@ class RotaryCoil(Coil):
     """A coil that drives a rotation about x: torque = `torque_constant` x current on the second body, the opposite on the first.
 
     Positive turns the second body in the positive sense about x; a negative `torque_constant` turns it the other way. `stiffness` and
-    `damping` are the magnets' and the coil's own about x, `angular_travel` the whole angle for which the torque constant holds. All other numbers
-    are as for a `VoiceCoil`; masses count as points, so that moments of inertia are those of the bodies.
+    `damping` are the magnets' and the coil's own about x, `angular_travel` the whole angle for which the torque constant holds. All other
+    numbers are as for a `VoiceCoil`; masses count as points, so that moments of inertia are those of the bodies.
     """
 
     kind: ClassVar[str] = "rotary_coil"
