@@ -85,6 +85,10 @@ class ThrustActuator(Actuator):
         """How fast its input can rise from zero to a `limit`, in the mean [1/s]; None: no limit is known."""
         return None
 
+    def in_series(self, count: int) -> ThrustActuator:  # noqa: ARG002  (coils need it)
+        """As many of them in one circuit, as their amplifier sees them; force or torque is that of one."""
+        return self
+
     def loss(self, rms: Number) -> Number | None:  # noqa: ARG002  (kinds that know it need it)
         """The power [W] that an input of this rms turns into heat; None: it is not known."""
         return None

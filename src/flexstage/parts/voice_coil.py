@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 
@@ -130,6 +130,17 @@ class Coil(ThrustActuator):
         if self.voltage is None or self.inductance is None:
             return None
         return (self.voltage - 0.5 * (self.resistance or 0.0) * limit) / self.inductance
+
+    def in_series(self, count: int) -> Self:
+        """Their resistances and inductances add up; so does their heat, through as many thermal resistances.
+
+        >>> pair = VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).in_series(2)
+        >>> pair.loss(1.0), pair.heat_current
+        (10.0, 2.0)
+        """
+        total = {name: None if (own := getattr(self, name)) is None else count * own for name in ("resistance", "inductance")}
+        thermal = None if self.thermal_resistance is None else self.thermal_resistance / count
+        return replace(self, **total, thermal_resistance=thermal)  # type: ignore[type-var]
 
     def loss(self, rms: Number) -> Number | None:
         """i^2 R [W]; None where no resistance is stated."""

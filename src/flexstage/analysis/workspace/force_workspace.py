@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from typing import Annotated, ClassVar
 
@@ -224,17 +224,20 @@ def _without_rounding(slope: Array) -> Array:
     return np.where(known, slope, slope - np.real(slope))
 
 
-def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
+def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterable[tuple[str, Array]]:
     """Half the magnetic travel of every coil against how far the motion opens it."""
     columns = model.input_index(inputs)
     moved = input_motion(model, columns, per_motion)
-    for name, link in assembly.thrusts.items():
+    found: dict[str, Array] = {}
+    for link, (name, _) in assembly.pushes.items():
         part = assembly.actuator(name)
         if isinstance(part, ThrustActuator) and part.travel is not None:
             imposed = model.imposed.get(link)
             opened = (model.stiffness[link].operator @ moved)[..., part.axis, :]
             opened = opened if imposed is None else opened - (imposed[..., columns] @ per_motion)[..., part.axis, :]
-            yield f"{name} travel", _over(0.5 * np.asarray(part.travel)[..., None], opened)
+            most = _over(0.5 * np.asarray(part.travel)[..., None], opened)
+            found[name] = np.minimum(found.get(name, np.inf), most)
+    return ((f"{name} travel", most) for name, most in found.items())
 
 
 def _stops(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
